@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Colour at the two ends: the tables handed in by the caller, wavelength sampling, and radiance -> linear Rec.709.
+//
+// D65 is the white: a light of RGB (1,1,1) emits D65 scaled so that its luminance is 1 (PHYSICS section 3).
+#pragma once
+
+#include "core/spectrum.h"
+#include "opal.h"
+
+namespace opal {
+
+struct ColourTables {
+  SpectralTable rgb_response[3];  // per nm: linear Rec.709 of a unit of spectral radiance (matching functions x matrix / normalisation)
+  SpectralTable basis[3];
+  SpectralTable d65;              // scaled: sum over the range of d65 * luminance response = 1
+  float first_nm = 360, last_nm = 830;  // the sampled range
+  // Cumulative distribution of the wavelength density over the 470 intervals, and the density per nm.
+  SpectralTable cdf, pdf;
+
+  // Prepares everything for wavelengths first..last. The response outside the range is left out, and the rest
+  // renormalised so that D65 stays white.
+  void prepare(const opal_tables &tables, float first, float last);
+  // kWavelengths equally spaced in the cumulative distribution, the hero at u.
+  Wavelengths sample(float u) const;
+  // Linear Rec.709 of radiance 1 at one wavelength.
+  Vec3 response(float nm) const;
+};
+
+}  // namespace opal

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The scene: what a caller described, plus what commit() built from it. Immutable while a render runs.
+#pragma once
+
+#include "core/colour.h"
+#include "core/vec.h"
+#include "lights/lights.h"
+#include "opal.h"
+#include "scene/embree_api.h"
+#include "shader/shader.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace opal {
+
+struct Image {
+  int width = 0, height = 0, channels = 4;
+  int pixel_type = OPAL_PIXEL_U8, transfer = OPAL_TRANSFER_LINEAR;
+  std::vector<uint8_t> bytes;
+  std::vector<float> floats;
+};
+
+struct Attribute {
+  int name = 0, domain = 0, components = 0;
+  std::vector<float> values;
+};
+
+struct Mesh {
+  std::vector<float> positions;        // 3 a vertex (+1 float of padding at the end, for Embree)
+  std::vector<float> positions_end;    // empty without motion
+  std::vector<int32_t> triangles;      // 3 a triangle
+  std::vector<float> corner_normals;   // 9 a triangle, or empty: flat
+  std::vector<float> corner_tangents;  // 12 a triangle, or empty
+  std::vector<int32_t> material_slots; // 1 a triangle, or empty: 0
+  std::vector<float> generated;        // 3 a vertex, or empty
+  std::vector<Attribute> attributes;
+  Bounds bounds;                       // object space, both ends of the motion
+  RTCScene embree = nullptr;           // one-triangle-mesh scene, instanced
+  bool dirty = true;
+
+  int n_triangles() const { return int(triangles.size() / 3); }
+  Vec3 vertex(int i) const { return {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]}; }
+  Vec3 vertex(int i, float time) const;
+};
+
+struct Instance {
+  uint32_t mesh = 0;
+  Transform to_world, to_object, to_world_end;
+  bool moving = false, mirrored = false;  // mirrored: negative determinant
+  uint32_t group = 0;                     // index into Scene::groups
+  float random = 0, object_index = 0;
+  float color[4] = {1, 1, 1, 1};
+};
+
+// What instances of one call share.
+struct InstanceGroup {
+  std::vector<int32_t> materials;
+  uint32_t visibility = OPAL_RAY_ALL;
+  bool holdout = false;
+  int light_group = -1;
+};
+
+struct Material {
+  Program surface;
+  bool is_gem = false;
+  opal_gem_desc gem{};
+  uint32_t flags = 0;
+};
+
+struct EmissiveTriangle {
+  uint32_t instance = 0, triangle = 0, material = 0;
+  Vec3 p0, p1, p2;      // world space
+  float area = 0;
+  Vec3 emission;        // estimate, for importance
+};
+
+struct Lamp {
+  opal_light_desc desc{};
+  Transform to_world, to_local;
+  Vec3 position, axis;  // axis: the direction it looks in
+};
+
+struct World {
+  bool present = false;
+  Program program;
+  uint32_t visibility = OPAL_RAY_ALL;
+  int map_width = 0;
+  bool caustics = true;
+};
+
+struct Hit {
+  float t = kInfinity, u = 0, v = 0;
+  uint32_t instance = 0, triangle = 0;
+  bool valid() const { return t < kInfinity; }
+};
+
+struct Scene {
+  ~Scene();
+
+  ColourTables colour;
+  EmbreeApi embree;
+  RTCDevice device = nullptr;
+  RTCScene top = nullptr;
+  int threads = 0;
+
+  std::vector<Image> images;
+  std::vector<SpectralTable> spectra;
+  std::vector<Material> materials;
+  std::vector<std::unique_ptr<Mesh>> meshes;
+  std::vector<Instance> instances;
+  std::vector<InstanceGroup> groups;
+  std::vector<Lamp> lamps;
+  World world;
+  opal_camera_desc camera{};
+  bool has_camera = false;
+
+  // Built by commit().
+  Bounds bounds;                            // of everything finite
+  std::vector<EmissiveTriangle> emissive;   // sorted by (instance, triangle)
+  std::vector<EmissionTarget> casters;      // spheres round what can make caustics
+  std::shared_ptr<LightTables> lights;
+  double build_seconds = 0;
+  bool geometry_dirty = true, instances_dirty = true, lights_dirty = true;
+
+  Hit intersect(const Ray &ray, uint32_t visibility) const;
+  bool occluded(const Ray &ray, uint32_t visibility) const;   // opaque things only matter to the caller
+  const Material &material_at(const Hit &hit) const;
+  uint32_t material_index(uint32_t instance, uint32_t triangle) const;
+  // Fills everything but ray_kind and depth.
+  ShadingPoint shading_point(const Ray &ray, const Hit &hit) const;
+  // Index into `emissive` or -1.
+  int find_emissive(uint32_t instance, uint32_t triangle) const;
+  int64_t memory_bytes() const;
+
+  // Building (scene/build.cpp). Throws std::bad_alloc or EmbreeError.
+  void commit();
+};
+
+// Pushes a point off the surface it lies on, to the side of `direction`, by the rounding error of its coordinates:
+// no absolute epsilon (Waechter & Binder 2019, Ray Tracing Gems chapter 6, with our own scaling).
+Vec3 offset_origin(const Vec3 &p, const Vec3 &ng, const Vec3 &direction);
+
+// Defined by lights/light_tables.cpp: everything sample_light & co need. Called by commit() when lights_dirty.
+std::shared_ptr<LightTables> build_light_tables(const Scene &scene);
+
+}  // namespace opal

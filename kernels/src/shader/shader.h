@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Running a material's register program at a point.
+#pragma once
+
+#include "bsdf/closure.h"
+#include "opal.h"
+#include "opal_shader.h"
+
+#include <vector>
+
+namespace opal {
+
+struct Scene;
+
+// A program as kept by the scene.
+struct Program {
+  std::vector<opal_instruction> code;
+  std::vector<float> constants;  // 4 floats a register
+  int n_constants = 0, n_registers = 0;
+  bool constant_emission = false;  // emission is the same everywhere
+  Vec3 emission;                   // that value, or an estimate
+};
+
+// Copies and checks a program: operations known, registers in range, images existing. On failure `error` says which
+// instruction and why.
+bool program_from_desc(const opal_program &desc, int n_images, Program &out, const char **error);
+
+// Runs `program` at `sp` and fills `out` (count, emission, holdout, albedo). Never throws, never allocates.
+void run_surface(const Scene &scene, const Program &program, const ShadingPoint &sp, ClosureSet &out);
+// Only the straight-through transmittance, for shadow rays.
+Vec3 run_transparency(const Scene &scene, const Program &program, const ShadingPoint &sp);
+// Only the emission (lamps' faces, the world; for the world sp.mesh is null and sp.p = direction).
+Vec3 run_emission(const Scene &scene, const Program &program, const ShadingPoint &sp);
+
+}  // namespace opal
