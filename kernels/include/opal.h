@@ -268,7 +268,7 @@ typedef struct opal_render_settings {
   float radius;                          /* of the first pass's kernel in metres; 0: chosen from the scene */
   float radius_shrink;                   /* alpha of Knaus & Zwicker 2011, 2/3 for surfaces */
   int32_t max_depth;                     /* bounces; Russian roulette ends paths before */
-  int32_t diffuse_depth, glossy_depth, transmission_depth, transparent_depth;
+  int32_t transparent_depth;             /* Transparent BSDFs passed by one ray */
   float wavelength_first, wavelength_last; /* nm */
   uint32_t seed;
   int32_t filter;                        /* OPAL_FILTER_* */
@@ -279,6 +279,7 @@ typedef struct opal_render_settings {
   int32_t motion_blur;
   int32_t spectral_bins;                 /* 0: none; else bins of the spectral film between the wavelengths */
   int32_t threads;                       /* 0: as the scene */
+  uint32_t passes;                       /* bit 1 << OPAL_PASS_*: what the film keeps; Combined always */
 } opal_render_settings;
 
 OPAL_EXPORT opal_render *opal_render_create(opal_scene *scene, const opal_render_settings *settings);

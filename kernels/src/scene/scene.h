@@ -138,9 +138,9 @@ struct Scene {
   void commit();
 };
 
-// Pushes a point off the surface it lies on, to the side of `direction`, by the rounding error of its coordinates:
-// no absolute epsilon (Waechter & Binder 2019, Ray Tracing Gems chapter 6, with our own scaling).
-Vec3 offset_origin(const Vec3 &p, const Vec3 &ng, const Vec3 &direction);
+// Where a ray that leaves sp.p in `direction` may start: off the surface by the rounding error of the point, which is
+// bounded axis by axis (Pharr, Jakob & Humphreys, "Managing rounding error"), so there is no absolute epsilon.
+Vec3 offset_origin(const ShadingPoint &sp, const Vec3 &direction);
 
 // Defined by lights/light_tables.cpp: everything sample_light & co need. Called by commit() when lights_dirty.
 std::shared_ptr<LightTables> build_light_tables(const Scene &scene);

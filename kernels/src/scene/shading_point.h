@@ -27,6 +27,7 @@ struct ShadingPoint {
   uint32_t depth = 0;           // bounces before this point
   float ray_length = 0;
   float time = 0;
+  Vec3 error;                   // bound on the rounding error of p, per axis
   bool backfacing = false;
   bool smooth = false;          // the face has normals of its own
 };
