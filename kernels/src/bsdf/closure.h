@@ -51,6 +51,8 @@ struct Lobe {
 
 // A lobe narrower than this is treated as perfectly specular.
 inline constexpr float kSpecularAlpha = 1e-4f;
+// Narrower than this it makes caustics; wider it can receive photons.
+inline constexpr float kSharpAlpha = 0.1f;
 inline constexpr int kMaxLobes = 16;
 
 // The gem boundary (see bsdf/gem.h).
@@ -108,8 +110,8 @@ Spectrum bsdf_eval(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi
                    Transport transport, Spectrum &pdf);
 // Whether any lobe is not Dirac, i.e. next-event estimation and photon gathering make sense here.
 bool bsdf_has_smooth_lobe(const ClosureSet &set);
-// The diffuse-like part alone (lobes with roughness above kGatherAlpha), for photons: f without the cosine.
-Spectrum bsdf_eval_rough(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w);
+// The part of bsdf_eval (f |cos|) that lobes of GGX alpha above kSharpAlpha and diffuse ones bring: where photons are left.
+Spectrum bsdf_eval_rough(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w, Transport transport);
 // Straight-through transmittance (Transparent lobes) and its complement.
 Vec3 bsdf_transparency(const ClosureSet &set);
 

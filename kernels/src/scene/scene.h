@@ -122,6 +122,7 @@ struct Scene {
   std::vector<EmissionTarget> casters;      // spheres round what can make caustics
   std::shared_ptr<LightTables> lights;
   double build_seconds = 0;
+  bool any_transparent_shadow = false;      // a material that shadow rays must look through
   bool geometry_dirty = true, instances_dirty = true, lights_dirty = true;
 
   Hit intersect(const Ray &ray, uint32_t visibility) const;

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// See colour.h. Equations: PHYSICS section 3; hero wavelengths: Wilkie et al. 2014.
+#include "core/colour.h"
+
+namespace opal {
+namespace {
+
+// IEC 61966-2-1 (Rec.709 primaries, D65 white): XYZ to linear RGB.
+constexpr double kXyzToRgb[3][3] = {{3.2404541621, -1.5371385128, -0.4985314096},
+                                    {-0.9692660305, 1.8760108454, 0.0415560175},
+                                    {0.0556434310, -0.2040259135, 1.0572251882}};
+
+// Where wavelengths are sampled: the visible-wavelength density of pbrt-v4 (Radziszewski et al. 2009), which follows
+// the eye, mixed with a little of the uniform one so that no part of the range is starved.
+double sampling_density(double nm) {
+  const double c = std::cosh(0.0072 * (nm - 538.0));
+  return 1.0 / (c * c) + 0.02;
+}
+
+}  // namespace
+
+void ColourTables::prepare(const opal_tables &tables, float first, float last) {
+  first_nm = clamp(first, float(kTableFirst), float(kTableFirst + kTableSize - 2));
+  last_nm = clamp(last, first_nm + 1, float(kTableFirst + kTableSize - 1));
+  const auto inside = [&](int i) {
+    // Trapezoid weight of sample i within [first, last]: the sum below equals the integral that sampling estimates.
+    const double nm = kTableFirst + i;
+    if (nm < first_nm || nm > last_nm) return 0.0;
+    return nm == first_nm || nm == last_nm ? 0.5 : 1.0;
+  };
+
+  for (int i = 0; i < kTableSize; ++i) d65[i] = tables.d65[i];
+  // D65 in the chosen range must come out as (1,1,1) whatever the range: each channel is renormalised.
+  double rgb_of_d65[3] = {0, 0, 0};
+  for (int i = 0; i < kTableSize; ++i) {
+    for (int c = 0; c < 3; ++c) {
+      double r = 0;
+      for (int k = 0; k < 3; ++k) r += kXyzToRgb[c][k] * tables.observer[k * kTableSize + i];
+      rgb_response[c][i] = float(r);
+      rgb_of_d65[c] += r * tables.d65[i] * inside(i);
+    }
+    for (int c = 0; c < 3; ++c) basis[c][i] = tables.basis[c * kTableSize + i];
+  }
+  // d65 is scaled to luminance 1 with the common factor; what remains per channel is rounding and the cut range.
+  const double scale = 1.0 / (0.2126729 * rgb_of_d65[0] + 0.7151522 * rgb_of_d65[1] + 0.0721750 * rgb_of_d65[2]);
+  for (int i = 0; i < kTableSize; ++i) d65[i] = float(d65[i] * scale * 100.0);
+  for (int c = 0; c < 3; ++c)
+    for (int i = 0; i < kTableSize; ++i) rgb_response[c][i] = float(rgb_response[c][i] / (rgb_of_d65[c] * scale * 100.0));
+
+  double total = 0;
+  std::array<double, kTableSize> running{};
+  for (int i = 0; i + 1 < kTableSize; ++i) {
+    const double nm = kTableFirst + i + 0.5;
+    running[i] = total;
+    total += nm > first_nm && nm < last_nm ? sampling_density(nm) : 0.0;
+  }
+  running[kTableSize - 1] = total;
+  for (int i = 0; i < kTableSize; ++i) cdf[i] = float(running[i] / total);
+  for (int i = 0; i + 1 < kTableSize; ++i) pdf[i] = float((running[i + 1] - running[i]) / total);
+  pdf[kTableSize - 1] = 0;
+}
+
+Wavelengths ColourTables::sample(float u) const {
+  Wavelengths w;
+  for (int k = 0; k < kWavelengths; ++k) {
+    float x = u + float(k) / kWavelengths;
+    x -= std::floor(x);
+    // The last interval whose cumulative value is not above x, among those with any probability.
+    int i = int(std::upper_bound(cdf.begin(), cdf.end(), x) - cdf.begin()) - 1;
+    i = std::clamp(i, 0, kTableSize - 2);
+    while (i > 0 && pdf[i] <= 0) --i;
+    while (i < kTableSize - 2 && pdf[i] <= 0) ++i;
+    const float f = clamp((x - cdf[i]) / pdf[i], 0.0f, 1.0f);
+    w.nm[k] = float(kTableFirst + i) + f;
+    w.pdf[k] = pdf[i];
+    const float scale = 1 / (pdf[i] * kWavelengths);
+    for (int c = 0; c < 3; ++c) {
+      w.basis[c][k] = lerp(basis[c][i], basis[c][i + 1], f);
+      w.to_rgb[c][k] = lerp(rgb_response[c][i], rgb_response[c][i + 1], f) * scale;
+    }
+    w.d65[k] = lerp(d65[i], d65[i + 1], f);
+  }
+  return w;
+}
+
+Vec3 ColourTables::response(float nm) const {
+  return {lookup(rgb_response[0], nm), lookup(rgb_response[1], nm), lookup(rgb_response[2], nm)};
+}
+
+}  // namespace opal

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "integrator/surface.h"
+
+namespace opal {
+
+void make_surface(const Scene &scene, const Ray &ray, const Hit &hit, uint32_t ray_kind, uint32_t depth,
+                  const InteriorStack &interior, const Wavelengths &w, Surface &out) {
+  out.sp = scene.shading_point(ray, hit);
+  out.sp.ray_kind = ray_kind;
+  out.sp.depth = depth;
+  out.material = scene.material_index(hit.instance, hit.triangle);
+  const Material &material = scene.materials[out.material];
+  out.is_gem = material.is_gem;
+  out.caster = (material.flags & OPAL_MATERIAL_CASTER) != 0;
+  out.nothing = false;
+  ClosureSet &set = out.closures;
+  set.count = 0;
+  set.emission = {};
+  set.holdout = 0;
+  set.albedo = {};
+
+  if (material.is_gem) {
+    out.boundary = boundary_at(scene, interior, out.sp, out.material, w);
+    out.nothing = !out.boundary.real;
+    if (out.nothing) return;
+    GemBoundary &gem = set.gem;
+    gem.n_front = out.boundary.n_front;
+    gem.n_behind = out.boundary.n_behind;
+    gem.eta = gem.n_behind / gem.n_front;
+    gem.alpha = sqr(material.gem.roughness);
+    gem.schlick = material.gem.fresnel == OPAL_FRESNEL_SCHLICK;
+    gem.dispersive = false;
+    for (int i = 1; i < kWavelengths; ++i) gem.dispersive |= gem.eta[i] != gem.eta[0];
+    if (Lobe *lobe = set.add(LobeKind::Gem, {1, 1, 1}, out.sp.ns)) {
+      lobe->alpha_x = lobe->alpha_y = gem.alpha;
+      lobe->eta = gem.eta[0];
+    }
+    set.albedo = {1, 1, 1};
+  } else {
+    run_surface(scene, material.surface, out.sp, set);
+  }
+  out.has_smooth_lobe = bsdf_has_smooth_lobe(set);
+  out.transmissive = false;
+  for (int i = 0; i < set.count; ++i) {
+    const LobeKind kind = set.lobes[i].kind;
+    out.transmissive |= kind == LobeKind::Translucent || kind == LobeKind::Glass || kind == LobeKind::Refraction ||
+                        kind == LobeKind::Gem;
+  }
+}
+
+SplitValue evaluate(const Surface &surface, const Vec3 &wi, const Wavelengths &w, Transport transport) {
+  SplitValue value;
+  value.rough = bsdf_eval(surface.closures, surface.sp, wi, w, transport, value.pdf);
+  value.sharp = Spectrum(0.0f);
+  if (!surface.caster) return value;
+  const Spectrum rough = bsdf_eval_rough(surface.closures, surface.sp, wi, w, transport);
+  for (int i = 0; i < kWavelengths; ++i) value.sharp[i] = std::max(0.0f, value.rough[i] - rough[i]);
+  value.rough = rough;
+  return value;
+}
+
+EventClass classify(const Surface &surface, const BsdfSample &sample, const Wavelengths &w, Transport transport, float u) {
+  if (!surface.caster) return EventClass::Rough;
+  if (sample.scattering & kScatterSpecular) return EventClass::Sharp;
+  const SplitValue value = evaluate(surface, sample.wi, w, transport);
+  const float total = value.rough.sum() + value.sharp.sum();
+  return u * total < value.sharp.sum() ? EventClass::Sharp : EventClass::Rough;
+}
+
+Vec3 transmittance(const Scene &scene, const Ray &ray, int max_layers) {
+  if (!scene.any_transparent_shadow) return scene.occluded(ray, OPAL_RAY_SHADOW) ? Vec3{} : Vec3{1, 1, 1};
+  Vec3 through{1, 1, 1};
+  Ray rest = ray;
+  for (int layer = 0;; ++layer) {
+    const Hit hit = scene.intersect(rest, OPAL_RAY_SHADOW);
+    if (!hit.valid()) return through;
+    const Material &material = scene.material_at(hit);
+    if (layer >= max_layers || material.is_gem || !(material.flags & OPAL_MATERIAL_TRANSPARENT_SHADOW)) return {};
+    ShadingPoint sp = scene.shading_point(rest, hit);
+    sp.ray_kind = OPAL_RAY_SHADOW;
+    through *= run_transparency(scene, material.surface, sp);
+    if (max_component(through) <= 0) return {};
+    rest.origin = offset_origin(sp, rest.direction);
+    rest.t_max -= hit.t;
+    if (!(rest.t_max > 0)) return through;
+  }
+}
+
+}  // namespace opal

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A surface point made ready for scattering: its closures, and the split of their light into rough and sharp.
+#pragma once
+
+#include "bsdf/closure.h"
+#include "integrator/path_class.h"
+#include "scene/interior.h"
+#include "scene/scene.h"
+
+namespace opal {
+
+struct Surface {
+  ShadingPoint sp;
+  ClosureSet closures;
+  uint32_t material = 0;
+  bool caster = false;        // its sharp lobes make caustics
+  bool is_gem = false;
+  bool nothing = false;       // a gem's boundary inside another interior: go straight on
+  bool has_smooth_lobe = false;
+  bool transmissive = false;  // light can arrive from behind
+  Boundary boundary;          // gems
+};
+
+void make_surface(const Scene &scene, const Ray &ray, const Hit &hit, uint32_t ray_kind, uint32_t depth,
+                  const InteriorStack &interior, const Wavelengths &w, Surface &out);
+
+// f |cos| for light from wi, divided into what rough and what sharp lobes scatter; pdf of bsdf_sample.
+struct SplitValue {
+  Spectrum rough, sharp, pdf;
+};
+SplitValue evaluate(const Surface &surface, const Vec3 &wi, const Wavelengths &w, Transport transport);
+
+// The class of a sampled event: of a sum of rough and sharp lobes the sharp share is taken with its probability (`u`).
+EventClass classify(const Surface &surface, const BsdfSample &sample, const Wavelengths &w, Transport transport, float u);
+
+// The fraction of light that passes from `origin` towards a point at `distance` (infinite for the sky): 0 behind opaque
+// things, the product of the straight-through transmittances otherwise. At most `max_layers` are looked through.
+Vec3 transmittance(const Scene &scene, const Ray &ray, int max_layers);
+
+}  // namespace opal
