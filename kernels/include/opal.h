@@ -204,6 +204,8 @@ typedef struct opal_light_desc {
   int32_t cast_shadow;
   int32_t normalize;   /* power does not depend on size */
   int32_t caustics;    /* non-zero: may send caustic photons */
+  int32_t soft_falloff; /* point, spot: a disc that faces each point it lights (Blender's default) instead of a sphere */
+  int32_t reserved;
   uint64_t receivers;  /* light linking: bit i lights receiver set i */
 } opal_light_desc;
 
