@@ -1,0 +1,315 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a scene is made of, as plain values: lights, camera, world, gems, programs and render settings.
+
+The fields are those of the structures in ``include/opal.h``, in their order and with their names. Lengths are metres,
+wavelengths nanometres, angles radians, powers watts, colours linear Rec.709; transforms are 3 x 4 matrices, object to world.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from enum import IntEnum, IntFlag
+
+import numpy as np
+
+SPECTRUM_FIRST_NM = 360
+SPECTRUM_SIZE = 471
+
+
+def wavelengths() -> np.ndarray:
+    """The wavelengths of every spectral table: 360, 361, ... 830 nm, float64 of shape (471,)."""
+    return np.arange(SPECTRUM_FIRST_NM, SPECTRUM_FIRST_NM + SPECTRUM_SIZE, dtype=np.float64)
+
+
+class Ray(IntFlag):
+    """Kinds of ray, for visibility masks."""
+
+    CAMERA = 1
+    DIFFUSE = 2
+    GLOSSY = 4
+    TRANSMISSION = 8
+    SHADOW = 16
+    SCATTER = 32
+    ALL = 63
+
+
+class LightType(IntEnum):
+    """Shapes of lamps."""
+
+    POINT = 0
+    SPOT = 1
+    SUN = 2
+    RECTANGLE = 3
+    ELLIPSE = 4
+
+
+class CameraType(IntEnum):
+    """Projections."""
+
+    PERSPECTIVE = 0
+    ORTHOGRAPHIC = 1
+
+
+class Transfer(IntEnum):
+    """Decoding of an image's stored values, applied after interpolation."""
+
+    LINEAR = 0
+    SRGB = 1
+
+
+class Domain(IntEnum):
+    """What an attribute has one value for."""
+
+    CORNER = 0
+    VERTEX = 1
+    FACE = 2
+
+
+class Fresnel(IntEnum):
+    """How a gem's boundary reflects."""
+
+    EXACT = 0
+    SCHLICK = 1
+
+
+class MaterialFlag(IntFlag):
+    """What the tracer has to know of a material before it runs its program."""
+
+    CASTER = 1
+    EMISSIVE = 2
+    TRANSPARENT_SHADOW = 4
+
+
+class Carry(IntEnum):
+    """Which light the photons bring; the camera's paths take the rest."""
+
+    CAUSTICS = 0
+    INDIRECT = 1
+    ALL = 2
+    NONE = 3
+
+
+class Filter(IntEnum):
+    """Pixel filters."""
+
+    BOX = 0
+    GAUSSIAN = 1
+    BLACKMAN_HARRIS = 2
+
+
+class Pass(IntEnum):
+    """Images that a film keeps."""
+
+    COMBINED = 0
+    DEPTH = 1
+    NORMAL = 2
+    POSITION = 3
+    ALBEDO = 4
+    EMISSION = 5
+    DIRECT = 6
+    INDIRECT = 7
+    CAUSTICS = 8
+    MEDIUM = 9
+    SPECTRAL = 10
+    NOISE = 11
+
+
+# Channels of each pass; the spectral one has as many as the settings ask for.
+PASS_CHANNELS = {
+    Pass.COMBINED: 4,
+    Pass.DEPTH: 1,
+    Pass.NORMAL: 3,
+    Pass.POSITION: 3,
+    Pass.ALBEDO: 3,
+    Pass.EMISSION: 3,
+    Pass.DIRECT: 3,
+    Pass.INDIRECT: 3,
+    Pass.CAUSTICS: 3,
+    Pass.MEDIUM: 3,
+    Pass.NOISE: 1,
+}
+
+IDENTITY = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0))
+Matrix = Sequence[Sequence[float]]
+
+
+@dataclass
+class Program:
+    """A material's register program (``include/opal_shader.h``).
+
+    Attributes
+    ----------
+    code : ndarray
+        int32 of shape (n_instructions, 16): operation, mode, first register written, 13 operands.
+    constants : ndarray
+        float32 of shape (n_constants, 4): what registers 0 .. n_constants - 1 start with.
+    n_registers : int
+        Registers in all.
+    """
+
+    code: np.ndarray
+    constants: np.ndarray
+    n_registers: int
+
+
+@dataclass
+class Gem:
+    """A dielectric boundary whose index depends on wavelength, round an absorbing interior.
+
+    Attributes
+    ----------
+    index_spectrum, absorption_spectrum : int
+        Numbers that ``Scene.add_spectrum`` gave: n(λ), and σa(λ) in 1/m or -1 for a clear interior.
+    roughness : float
+        0 is polished; the GGX width is its square.
+    priority : int
+        Where two interiors overlap the higher one wins.
+    """
+
+    index_spectrum: int
+    absorption_spectrum: int = -1
+    roughness: float = 0.0
+    fresnel: int = Fresnel.EXACT
+    priority: int = 0
+
+
+@dataclass
+class Attribute:
+    """A mesh attribute that programs read by number.
+
+    Attributes
+    ----------
+    name : int
+        The number programs use for it.
+    domain : Domain
+        Corner (3 a triangle), vertex or face.
+    values : ndarray
+        float32 of shape (count, 1 to 4).
+    """
+
+    name: int
+    domain: int
+    values: np.ndarray
+
+
+@dataclass
+class Light:
+    """A lamp; it looks along its local -Z.
+
+    Attributes
+    ----------
+    color : sequence of 3 floats
+        Linear Rec.709, without the power.
+    power : float
+        Watts as Blender counts them (sun: irradiance in W/m²), exposure included.
+    radius : float
+        Point and spot: of the sphere in metres. Sun: half of its angle.
+    size_u, size_v : float
+        Area: edge lengths or axes along local X and Y, before ``transform``.
+    spread : float
+        Area: full angle, π is Lambertian.
+    receivers : int
+        Light linking: bit i lights receiver set i.
+    """
+
+    type: int = LightType.POINT
+    spectrum: int = -1
+    transform: Matrix = IDENTITY
+    color: Sequence[float] = (1.0, 1.0, 1.0)
+    power: float = 1.0
+    radius: float = 0.0
+    spot_angle: float = math.pi / 4
+    spot_blend: float = 0.0
+    size_u: float = 1.0
+    size_v: float = 1.0
+    spread: float = math.pi
+    visibility: int = Ray.ALL
+    cast_shadow: int = 1
+    normalize: int = 1
+    caustics: int = 1
+    receivers: int = 0xFFFFFFFFFFFFFFFF
+
+
+@dataclass
+class World:
+    """Radiance from infinity: a program run with the direction looked in as its position.
+
+    Attributes
+    ----------
+    map_width : int
+        Width in pixels of the importance map; 0 for a uniform world.
+    """
+
+    program: Program | None = None
+    visibility: int = Ray.ALL
+    map_width: int = 0
+    caustics: int = 1
+
+
+@dataclass
+class Camera:
+    """Looks along its local -Z with Y up.
+
+    Attributes
+    ----------
+    window : sequence of 4 floats
+        Left, right, bottom, top of the full frame: at distance 1 (perspective) or in metres (orthographic).
+    aperture_radius : float
+        0 is a pinhole.
+    """
+
+    type: int = CameraType.PERSPECTIVE
+    blades: int = 0
+    transform: Matrix = IDENTITY
+    transform_end: Matrix | None = None
+    window: Sequence[float] = (-0.36, 0.36, -0.36, 0.36)
+    clip_start: float = 0.0
+    clip_end: float = 1e30
+    aperture_radius: float = 0.0
+    focus_distance: float = 1.0
+    blade_rotation: float = 0.0
+    aperture_ratio: float = 1.0
+
+
+@dataclass
+class RenderSettings:
+    """How to render; see ``opal_render_settings``.
+
+    Attributes
+    ----------
+    width, height : int
+        Pixels of the full frame.
+    region : sequence of 4 ints, optional
+        x0, y0, x1, y1 of the pixels rendered, y up; None is the whole frame.
+    radius : float
+        Of the first pass's photon kernel in metres; 0 lets the scene choose.
+    passes : iterable of Pass
+        What the film keeps beside Combined.
+    """
+
+    width: int = 256
+    height: int = 256
+    region: Sequence[int] | None = None
+    samples_per_pass: int = 1
+    photons_per_pass: int = 100_000
+    photons_carry: int = Carry.CAUSTICS
+    gather: int = 64
+    radius: float = 0.0
+    radius_shrink: float = 2.0 / 3.0
+    max_depth: int = 32
+    transparent_depth: int = 32
+    wavelength_first: float = 360.0
+    wavelength_last: float = 830.0
+    seed: int = 0
+    filter: int = Filter.BLACKMAN_HARRIS
+    filter_width: float = 1.5
+    exposure: float = 1.0
+    transparent_film: bool = False
+    clamp_direct: float = 0.0
+    clamp_indirect: float = 0.0
+    motion_blur: bool = False
+    spectral_bins: int = 0
+    threads: int = 0
+    passes: Sequence[int] = field(default_factory=tuple)
