@@ -137,6 +137,12 @@ struct Scene {
 
   // Building (scene/build.cpp). Throws std::bad_alloc or EmbreeError.
   void commit();
+  // Restricts the wavelengths that paths sample; light tables do not depend on it.
+  void set_wavelengths(float first, float last) { colour.prepare(tables(), first, last); }
+
+  // The caller's tables, kept because the range may change.
+  std::vector<float> observer_table, d65_table, basis_table;
+  opal_tables tables() const { return {observer_table.data(), d65_table.data(), basis_table.data()}; }
 };
 
 // Where a ray that leaves sp.p in `direction` may start: off the surface by the rounding error of the point, which is

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is constant while one pass runs: scene, settings, the pass's wavelengths, its photons.
+#pragma once
+
+#include "camera/camera.h"
+#include "film/film.h"
+#include "film/pixel_filter.h"
+#include "photons/photon_map.h"
+#include "scene/scene.h"
+
+#include <array>
+#include <atomic>
+
+namespace opal {
+
+// A pass samples 64 wavelengths: 8 sets of kWavelengths, each usable with any of its members as the hero.
+inline constexpr int kPassWavelengths = 64;
+inline constexpr int kWavelengthSets = kPassWavelengths / kWavelengths;
+static_assert(kWavelengthSets * kWavelengths == kPassWavelengths);
+
+// Streams of the sampler: pixels count from 0, photons and passes sit above every pixel.
+enum Stream : uint32_t { kStreamPhotons = 0xf0000000u, kStreamPass = 0xf1000000u };
+
+struct PassContext {
+  PassContext(const Scene &scene_, const opal_render_settings &settings_, const PixelFilter &filter_, int pass_)
+      : scene(scene_), settings(settings_), filter(filter_), pass(pass_) {
+    const float shift = Sampler(settings.seed, kStreamPass, uint32_t(pass)).get1d(0);
+    for (int i = 0; i < kPassWavelengths; ++i)
+      wavelengths[size_t(i)] = scene.colour.sample((float(i) + shift) / kPassWavelengths);
+  }
+
+  // Number i of the pass's wavelengths is hero; its set is i mod 8, its position in the set i / 8.
+  static uint32_t wavelength_index(float u) { return std::min(uint32_t(u * kPassWavelengths), uint32_t(kPassWavelengths - 1)); }
+  static uint32_t set_of(uint32_t index) { return index % kWavelengthSets; }
+  static uint32_t position_of(uint32_t index, uint32_t k) { return (index / kWavelengthSets + k) % kWavelengths; }
+
+  const Scene &scene;
+  const opal_render_settings &settings;
+  const PixelFilter &filter;
+  const int pass;
+  std::array<Wavelengths, kPassWavelengths> wavelengths;
+  PhotonMap photons;
+};
+
+}  // namespace opal

@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One camera path, from lens to light.
+//
+// Wavelengths: the hero's geometry is followed. `throughput` is f / p(hero), `path_pdf` is p(lambda) / p(hero) of the
+// path so far; with p_light in the same unit, a contribution is divided by the mean over wavelengths of the pdfs that
+// could have produced it (Wilkie et al. 2014; the bookkeeping follows pbrt-v4's "rescaled path probabilities").
+// Dispersion sets path_pdf of the other wavelengths to 0 and so leaves the hero alone with its full weight.
+#include "integrator/path_tracer.h"
+
+#include "integrator/surface.h"
+#include "photons/gather.h"
+
+namespace opal {
+namespace {
+
+constexpr uint32_t kRouletteStart = 4;    // events before Russian roulette sets in
+constexpr uint32_t kMaxEvents = 4096;     // nothing physical gets there; guards against loops of free passes
+
+// Where the path last scattered, as the light sampler saw it.
+struct LastEvent {
+  bool light_was_sampled = false;  // next-event estimation could have found what the ray finds now
+  EventClass event = EventClass::Sharp;
+  Vec3 p, normal;
+  bool transmissive = false;
+  int32_t light_group = -1;
+  float pdf = 0;  // hero's, of the direction
+};
+
+class CameraPath {
+ public:
+  CameraPath(const PassContext &pass, uint32_t x, uint32_t y, uint32_t sample, RayCounts &counts)
+      : pass_(pass),
+        scene_(pass.scene),
+        settings_(pass.settings),
+        sampler_(settings_.seed, y * uint32_t(settings_.width) + x,
+                 uint32_t(pass.pass) * uint32_t(settings_.samples_per_pass) + sample),
+        index_(PassContext::wavelength_index(sampler_.get1d(kDimWavelength))),
+        w_(pass.wavelengths[index_]),
+        counts_(counts) {
+    const Vec2 offset = pass.filter.sample(sampler_.get2d(kDimFilter));
+    const float film_x = (float(x) + 0.5f + offset.x) / float(settings_.width);
+    const float film_y = (float(y) + 0.5f + offset.y) / float(settings_.height);
+    const float time = settings_.motion_blur ? sampler_.get1d(kDimTime) : 0.0f;
+    alive_ = generate_ray(scene_.camera, film_x, film_y, sampler_.get2d(kDimLens), time, ray_);
+    ++counts_.camera;
+  }
+
+  PathLight trace() {
+    light_.wavelength_index = index_;
+    light_.spectral = Spectrum(0.0f);
+    while (alive_ && events_ < kMaxEvents) step();
+    return light_;
+  }
+
+ private:
+  void step() {
+    const Hit hit = scene_.intersect(ray_, ray_kind_);
+    ++counts_.path;
+    if (hit.valid()) absorb(scene_, interior_, hit.t, w_, throughput_);
+    meet_lamps(hit.t);
+    if (!hit.valid()) {
+      escape();
+      return;
+    }
+    make_surface(scene_, ray_, hit, ray_kind_, bounces_, interior_, w_, surface_);
+    if (surface_.nothing) {
+      cross_boundary(surface_.boundary, interior_);
+      go_straight_on();
+      return;
+    }
+    note_guides();
+    meet_emission(hit);
+    if (final_ray_) {
+      pass_or_stop();
+      return;
+    }
+    if (surface_.closures.holdout > 0 && bounces_ == 0) light_.alpha *= 1 - surface_.closures.holdout;
+    scatter();
+  }
+
+  // ---- Light that the ray meets ----
+
+  void meet_lamps(float t_end) {
+    float after = ray_.t_min;
+    LampHit lamp;
+    while (intersect_lamps(scene_, ray_, after, t_end, ray_kind_, w_, lamp)) {
+      const SourceId source{SourceKind::Lamp, lamp.lamp};
+      add_met(source, lamp.radiance, ray_.origin + ray_.direction * lamp.t, lamp.normal, lamp.t + travelled_);
+      after = std::nextafter(lamp.t, kInfinity);
+    }
+  }
+
+  void meet_emission(const Hit &hit) {
+    if (max_component(surface_.closures.emission) <= 0) return;
+    const int triangle = scene_.find_emissive(hit.instance, hit.triangle);
+    const SourceId source = triangle >= 0 ? SourceId{SourceKind::Triangle, uint32_t(triangle)} : SourceId{};
+    add_met(source, uplift_light(surface_.closures.emission, w_), surface_.sp.p, surface_.sp.ng, hit.t + travelled_);
+  }
+
+  void escape() {
+    alive_ = false;
+    const bool seen_at_first_hand = bounces_ == 0;
+    if (seen_at_first_hand && settings_.transparent_film) light_.alpha = 0;
+    EscapedRadiance sources[8];
+    const int n = escaped_radiance(scene_, ray_.direction, ray_kind_, w_, sources, 8);
+    for (int i = 0; i < n; ++i) {
+      if (seen_at_first_hand && settings_.transparent_film && sources[i].source.kind == SourceKind::World) continue;
+      add_met(sources[i].source, sources[i].radiance, {}, {}, kInfinity);
+    }
+  }
+
+  void add_met(const SourceId &source, const Spectrum &radiance, const Vec3 &point, const Vec3 &normal, float distance) {
+    if (radiance.is_zero()) return;
+    const bool after_rough = last_.event == EventClass::Rough ? rough_events_ > 1 : rough_events_ > 0;
+    if (bounces_ > 0 && brought_by_photons(scene_, settings_.photons_carry, last_.event, after_rough, source)) return;
+    Spectrum pdf = path_pdf_;
+    if (last_.light_was_sampled && source.kind != SourceKind::None) {
+      const float p = light_pdf(scene_, source, last_.p, last_.normal, last_.transmissive, last_.light_group, ray_.direction,
+                                distance, normal, point);
+      if (p > 0) pdf += previous_pdf_ * (p / last_.pdf);
+    }
+    add(throughput_ * radiance / pdf.average(), last_.event == EventClass::Sharp && rough_events_ > 0);
+  }
+
+  // ---- Scattering ----
+
+  void scatter() {
+    const ClosureSet &set = surface_.closures;
+    if (set.count == 0) {
+      alive_ = false;
+      return;
+    }
+    const uint32_t dimension = bounce_dimension(events_, 0);
+    // Depth limits hold what is rough; between mirrors and in gems roulette alone ends a path, or they would darken.
+    const bool may_go_on = rough_bounces_ < uint32_t(std::max(0, settings_.max_depth));
+    if (surface_.has_smooth_lobe) {
+      if (may_go_on || bounces_ == 0) sample_direct(dimension);
+      if (gathers()) gather();
+    }
+
+    BsdfSample sample;
+    if (!bsdf_sample(set, surface_.sp, w_, Transport::Radiance, sampler_.get1d(dimension + kDimBsdfLobe),
+                     sampler_.get2d(dimension + kDimBsdf), sample)) {
+      alive_ = false;
+      return;
+    }
+    if (sample.scattering & kScatterTransparent) {
+      throughput_ *= sample.weight;
+      update_path_pdf(sample);
+      if (++transparent_layers_ > uint32_t(std::max(1, settings_.transparent_depth)) || throughput_.is_zero()) alive_ = false;
+      else go_straight_on();
+      return;
+    }
+    const EventClass event = classify(surface_, sample, w_, Transport::Radiance, sampler_.get1d(dimension + kDimSpare));
+    const bool specular = (sample.scattering & kScatterSpecular) != 0;
+    if (!specular && !may_go_on) {
+      alive_ = false;
+      return;
+    }
+    if (event == EventClass::Rough && !camera_goes_on_after_rough(settings_.photons_carry)) {
+      // Photons bring the rest, but for direct light, of which this ray is next-event estimation's other half.
+      if (settings_.photons_carry != OPAL_CARRY_INDIRECT) {
+        alive_ = false;
+        return;
+      }
+      final_ray_ = true;
+    }
+
+    throughput_ *= sample.weight;
+    previous_pdf_ = path_pdf_;
+    update_path_pdf(sample);
+    if (!throughput_.is_finite() || throughput_.is_zero()) {
+      alive_ = false;
+      return;
+    }
+    last_.light_was_sampled = !specular;
+    last_.event = event;
+    last_.p = surface_.sp.p;
+    last_.normal = surface_.sp.ns;
+    last_.transmissive = surface_.transmissive;
+    last_.light_group = scene_.groups[surface_.sp.instance->group].light_group;
+    last_.pdf = sample.pdf[0];
+    ++bounces_;
+    ++events_;
+    if (!specular) ++rough_bounces_;
+    if (event == EventClass::Rough) ++rough_events_;
+    if (surface_.is_gem && (sample.scattering & kScatterTransmit)) cross_boundary(surface_.boundary, interior_);
+    if (surface_.is_gem && (sample.scattering & kScatterTransmit)) eta_scale_ *= sqr(sample.eta);
+
+    ray_kind_ = sample.scattering & kScatterTransmit  ? uint32_t(OPAL_RAY_TRANSMISSION)
+                : sample.scattering & kScatterDiffuse ? uint32_t(OPAL_RAY_DIFFUSE)
+                                                      : uint32_t(OPAL_RAY_GLOSSY);
+    ray_ = {offset_origin(surface_.sp, sample.wi), sample.wi, 0, kInfinity, ray_.time};
+    travelled_ = 0;
+    roulette(sampler_.get1d(dimension + kDimRoulette));
+  }
+
+  void update_path_pdf(const BsdfSample &sample) {
+    if (!(sample.pdf[0] > 0)) return;
+    for (int i = 0; i < kWavelengths; ++i) path_pdf_[i] *= sample.pdf[i] / sample.pdf[0];
+    // A wavelength that could not have come this way carries nothing.
+    for (int i = 0; i < kWavelengths; ++i)
+      if (path_pdf_[i] <= 0) throughput_[i] = 0;
+  }
+
+  void roulette(float u) {
+    if (bounces_ < kRouletteStart) return;
+    const float q = clamp((throughput_.max() * eta_scale_) / path_pdf_.average(), 0.0f, 1.0f);
+    // Inside a gem nothing is lost at a reflection; a small chance to stop keeps the longest chains finite.
+    const float survive = bounces_ > 64 ? std::min(q, 0.95f) : q;
+    if (!(u < survive)) {
+      alive_ = false;
+      return;
+    }
+    throughput_ *= 1 / survive;
+  }
+
+  void go_straight_on() {
+    travelled_ += surface_.sp.ray_length;
+    ray_.origin = offset_origin(surface_.sp, ray_.direction);
+    ray_.t_min = 0;
+    ray_.t_max = std::max(0.0f, ray_.t_max - surface_.sp.ray_length);
+    ++events_;
+  }
+
+  // The last ray of a path that looks for lamps only: on through what is transparent.
+  void pass_or_stop() {
+    throughput_ *= uplift(bsdf_transparency(surface_.closures), w_);
+    if (throughput_.max() <= 0 || ++transparent_layers_ > uint32_t(settings_.transparent_depth)) alive_ = false;
+    else go_straight_on();
+  }
+
+  void sample_direct(uint32_t dimension) {
+    const bool rough_counts = settings_.photons_carry != OPAL_CARRY_ALL;
+    if (!rough_counts && !surface_.caster) return;
+    const ShadingPoint &sp = surface_.sp;
+    const int32_t group = scene_.groups[sp.instance->group].light_group;
+    LightSample sample;
+    if (!sample_light(scene_, sp.p, sp.ns, surface_.transmissive, group, sampler_.get1d(dimension + kDimLightPick),
+                      sampler_.get2d(dimension + kDimLight), w_, ray_.time, sample) ||
+        !(sample.pdf > 0))
+      return;
+    const SplitValue value = evaluate(surface_, sample.wi, w_, Transport::Radiance);
+    const bool keep_rough = !brought_by_photons(scene_, settings_.photons_carry, EventClass::Rough, rough_events_ > 0, sample.source);
+    const bool keep_sharp = !brought_by_photons(scene_, settings_.photons_carry, EventClass::Sharp, rough_events_ > 0, sample.source);
+    Spectrum f(0.0f);
+    if (keep_rough) f += value.rough;
+    if (keep_sharp) f += value.sharp;
+    if (f.is_zero()) return;
+    Spectrum pdf = path_pdf_ * sample.pdf;
+    if (!sample.dirac) pdf += path_pdf_ * value.pdf;
+    Spectrum contribution = throughput_ * f * sample.radiance / pdf.average();
+    if (contribution.is_zero() || !contribution.is_finite()) return;
+    if (sample.cast_shadow) {
+      const Ray shadow{offset_origin(sp, sample.wi), sample.wi, 0,
+                       std::isfinite(sample.distance) ? sample.distance * (1 - 1e-5f) : kInfinity, ray_.time};
+      ++counts_.shadow;
+      const Vec3 through = transmittance(scene_, shadow, settings_.transparent_depth);
+      if (max_component(through) <= 0) return;
+      if (through.x != 1 || through.y != 1 || through.z != 1) contribution *= uplift(through, w_);
+    }
+    add_scattered(contribution, value.sharp.sum() > value.rough.sum() && rough_events_ > 0);
+  }
+
+  // ---- Photons ----
+
+  // Seen at first hand, photons are splatted from their own side; everything else is looked up.
+  bool gathers() const { return bounces_ > 0 && !pass_.photons.empty(); }
+
+  void gather() {
+    const Spectrum flux = gather_photons(pass_.photons, surface_, w_, index_, settings_.gather);
+    if (flux.is_zero()) return;
+    add_bounced(throughput_ * flux / path_pdf_.average(), true);
+  }
+
+  // ---- Bookkeeping ----
+
+  // Light met by the ray: bounces_ events lie between it and the camera.
+  void add(const Spectrum &radiance, bool caustic) { add_after(radiance, bounces_, caustic); }
+  // Light scattered once more, at the present surface.
+  void add_scattered(const Spectrum &radiance, bool caustic) { add_after(radiance, bounces_ + 1, caustic); }
+  void add_bounced(const Spectrum &radiance, bool caustic) { add_after(radiance, bounces_ + 2, caustic); }
+
+  void add_after(Spectrum radiance, uint32_t events, bool caustic) {
+    if (!radiance.is_finite()) return;
+    const float limit = events <= 1 ? settings_.clamp_direct : settings_.clamp_indirect;
+    Vec3 rgb = to_rgb(radiance, w_);
+    if (limit > 0) {
+      const float sum = std::abs(rgb.x) + std::abs(rgb.y) + std::abs(rgb.z);
+      if (sum > limit * 3) rgb *= limit * 3 / sum, radiance *= limit * 3 / sum;
+    }
+    (caustic ? light_.caustics : events == 0 ? light_.emission : events == 1 ? light_.direct : light_.indirect) += rgb;
+    light_.spectral += radiance;
+  }
+
+  void note_guides() {
+    if (light_.hit || bounces_ > 0) return;
+    const ClosureSet &set = surface_.closures;
+    const bool only_transparent = set.count == 1 && set.lobes[0].kind == LobeKind::Transparent;
+    if (only_transparent) return;
+    light_.hit = true;
+    light_.normal = surface_.sp.ns;
+    light_.position = surface_.sp.p;
+    light_.albedo = min(set.albedo + set.emission, Vec3{1, 1, 1});
+    const Transform camera = camera_transform(scene_.camera, ray_.time);
+    light_.depth = dot(surface_.sp.p - camera.origin(), -camera.axis(2));
+  }
+
+  const PassContext &pass_;
+  const Scene &scene_;
+  const opal_render_settings &settings_;
+  const Sampler sampler_;
+  const uint32_t index_;
+  const Wavelengths &w_;
+  RayCounts &counts_;
+
+  Ray ray_;
+  uint32_t ray_kind_ = OPAL_RAY_CAMERA;
+  InteriorStack interior_;
+  Surface surface_;
+  LastEvent last_;
+  PathLight light_;
+  Spectrum throughput_{1.0f}, path_pdf_{1.0f}, previous_pdf_{1.0f};
+  float eta_scale_ = 1, travelled_ = 0;
+  uint32_t events_ = 0;         // everything, free passes included: addresses the random numbers
+  uint32_t bounces_ = 0;        // real changes of direction
+  uint32_t rough_bounces_ = 0;  // those that are not mirrors
+  uint32_t rough_events_ = 0;   // of class Rough
+  uint32_t transparent_layers_ = 0;
+  bool alive_ = true;
+  bool final_ray_ = false;      // only lamps are looked for: photons bring everything else
+};
+
+}  // namespace
+
+PathLight trace_camera_path(const PassContext &pass, uint32_t x, uint32_t y, uint32_t sample, RayCounts &counts) {
+  return CameraPath(pass, x, y, sample, counts).trace();
+}
+
+}  // namespace opal

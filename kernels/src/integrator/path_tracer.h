@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Camera paths: next-event estimation with multiple importance, photons gathered at rough events that the camera does
+// not see at first hand.
+#pragma once
+
+#include "integrator/pass.h"
+
+namespace opal {
+
+// What one camera path brings, in linear Rec.709 and by kind of light; their sum is the picture.
+struct PathLight {
+  Vec3 emission;   // seen at first hand
+  Vec3 direct;     // one event
+  Vec3 indirect;   // more than one
+  Vec3 caustics;   // a rough event lit through sharp ones
+  float alpha = 1;
+  // Guides, of the first event that is not straight through.
+  Vec3 normal, position, albedo;
+  float depth = 0;
+  bool hit = false;
+  // Radiance at the path's wavelengths, for the spectral film.
+  Spectrum spectral;
+  uint32_t wavelength_index = 0;
+};
+
+struct RayCounts {
+  int64_t camera = 0, path = 0, shadow = 0;
+};
+
+PathLight trace_camera_path(const PassContext &pass, uint32_t x, uint32_t y, uint32_t sample, RayCounts &counts);
+
+}  // namespace opal

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A render: settings, film, and the running of passes on all threads.
+#pragma once
+
+#include "integrator/pass.h"
+
+#include <atomic>
+#include <mutex>
+
+namespace opal {
+
+class Render {
+ public:
+  Render(const Scene &scene, const opal_render_settings &settings);
+
+  // False when cancelled; the film is then as before.
+  bool render_pass(int number);
+  void cancel() { cancelled_ = true; }
+  float progress() const { return progress_.load(std::memory_order_relaxed); }
+  bool read(int pass, float *out) const;
+  float noise() const;
+  opal_render_statistics statistics() const;
+
+ private:
+  bool trace_photons_of(PassContext &pass, PassBuffer &buffer, std::vector<Vec3> &splats);
+  bool trace_camera_of(const PassContext &pass, PassBuffer &buffer, const std::vector<Vec3> &splats);
+  float radius_of(int pass) const;
+  bool wants_photons() const;
+  int width() const { return settings_.region[2] - settings_.region[0]; }
+  int height() const { return settings_.region[3] - settings_.region[1]; }
+
+  const Scene &scene_;
+  const opal_render_settings settings_;
+  const PixelFilter filter_;
+  const int threads_;
+  mutable std::mutex film_mutex_;
+  Film film_;
+  opal_render_statistics statistics_{};
+  std::atomic<bool> cancelled_{false};
+  std::atomic<float> progress_{0};
+};
+
+}  // namespace opal

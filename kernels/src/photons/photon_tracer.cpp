@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "photons/photon_tracer.h"
+
+#include "film/spectral_film.h"
+#include "integrator/surface.h"
+
+namespace opal {
+namespace {
+
+constexpr int kMaxEvents = 1024;
+constexpr int kRouletteStart = 6;
+
+class PhotonPath {
+ public:
+  PhotonPath(const PassContext &pass, uint32_t number, PhotonChunk &out)
+      : pass_(pass),
+        scene_(pass.scene),
+        settings_(pass.settings),
+        sampler_(settings_.seed, kStreamPhotons + uint32_t(pass.pass), number),
+        index_(PassContext::wavelength_index(sampler_.get1d(kDimWavelength))),
+        w_(pass.wavelengths[index_]),
+        out_(out) {}
+
+  void trace() {
+    if (!emit()) return;
+    for (int events = 0; events < kMaxEvents; ++events)
+      if (!step(uint32_t(events))) return;
+  }
+
+ private:
+  bool emit() {
+    static const std::vector<EmissionTarget> kEverywhere;
+    const bool aimed = settings_.photons_carry == OPAL_CARRY_CAUSTICS;
+    const float time = settings_.motion_blur ? sampler_.get1d(kDimTime) : 0.0f;
+    EmissionSample sample;
+    if (!sample_emission(scene_, aimed ? scene_.casters : kEverywhere, sampler_.get2d(kDimEmissionLight),
+                         sampler_.get2d(kDimEmissionPosition), sampler_.get2d(kDimEmissionDirection), time, w_, sample))
+      return false;
+    if (!source_emits_photons(scene_, settings_.photons_carry, sample.source)) return false;
+    ray_ = sample.ray;
+    flux_ = sample.flux * (1.0f / float(settings_.photons_per_pass));
+    start_ = flux_.max();
+    return flux_.is_finite() && start_ > 0;
+  }
+
+  bool step(uint32_t events) {
+    const uint32_t kind = sharp_events_ + rough_events_ == 0 ? uint32_t(OPAL_RAY_ALL & ~OPAL_RAY_CAMERA) : ray_kind_;
+    const Hit hit = scene_.intersect(ray_, kind);
+    ++out_.rays;
+    if (!hit.valid()) return false;
+    absorb(scene_, interior_, hit.t, w_, flux_);
+    make_surface(scene_, ray_, hit, ray_kind_, uint32_t(sharp_events_ + rough_events_), interior_, w_, surface_);
+    if (surface_.nothing) {
+      cross_boundary(surface_.boundary, interior_);
+      go_on(ray_.direction);
+      return true;
+    }
+    if (surface_.has_smooth_lobe && photon_is_left(settings_.photons_carry, sharp_events_, rough_events_)) leave();
+    if (!surface_.caster && !photon_goes_on(settings_.photons_carry) && !has_transparent_lobe()) return false;
+
+    const uint32_t dimension = bounce_dimension(events, 0);
+    BsdfSample sample;
+    if (!bsdf_sample(surface_.closures, surface_.sp, w_, Transport::Flux, sampler_.get1d(dimension + kDimBsdfLobe),
+                     sampler_.get2d(dimension + kDimBsdf), sample))
+      return false;
+    flux_ *= sample.weight;
+    for (int i = 0; i < kWavelengths; ++i) {
+      path_pdf_[i] *= sample.pdf[i] / sample.pdf[0];
+      if (path_pdf_[i] <= 0) flux_[i] = 0;
+    }
+    if (!flux_.is_finite() || flux_.is_zero()) return false;
+    if (sample.scattering & kScatterTransparent) {
+      go_on(ray_.direction);
+      return true;
+    }
+    const EventClass event = classify(surface_, sample, w_, Transport::Flux, sampler_.get1d(dimension + kDimSpare));
+    if (event == EventClass::Rough && !photon_goes_on(settings_.photons_carry)) return false;
+    (event == EventClass::Rough ? rough_events_ : sharp_events_) += 1;
+    if (!(sample.scattering & kScatterSpecular) && ++rough_bounces_ > settings_.max_depth) return false;
+    if (surface_.is_gem && (sample.scattering & kScatterTransmit)) cross_boundary(surface_.boundary, interior_);
+    ray_kind_ = sample.scattering & kScatterTransmit  ? uint32_t(OPAL_RAY_TRANSMISSION)
+                : sample.scattering & kScatterDiffuse ? uint32_t(OPAL_RAY_DIFFUSE)
+                                                      : uint32_t(OPAL_RAY_GLOSSY);
+    go_on(sample.wi);
+
+    if (sharp_events_ + rough_events_ >= kRouletteStart) {
+      const float survive = std::min(0.98f, flux_.max() / (path_pdf_.average() * start_));
+      if (!(sampler_.get1d(dimension + kDimRoulette) < survive)) return false;
+      flux_ *= 1 / survive;
+    }
+    return true;
+  }
+
+  bool has_transparent_lobe() const {
+    for (int i = 0; i < surface_.closures.count; ++i)
+      if (surface_.closures.lobes[i].kind == LobeKind::Transparent) return true;
+    return false;
+  }
+
+  void go_on(const Vec3 &direction) {
+    ray_ = {offset_origin(surface_.sp, direction), direction, 0, kInfinity, ray_.time};
+  }
+
+  // Leaves the photon: in the map, and on the film where the camera sees this point.
+  void leave() {
+    const Spectrum flux = flux_ / path_pdf_.average();
+    const ShadingPoint &sp = surface_.sp;
+    Photon photon;
+    photon.position = sp.p;
+    photon.direction = pack_direction(sp.wo);
+    photon.normal = pack_direction(sp.ng);
+    photon.set = PassContext::set_of(index_);
+    // Of eight sets a lookup sees one.
+    for (int k = 0; k < kWavelengths; ++k)
+      photon.flux[PassContext::position_of(index_, uint32_t(k))] = flux[k] * kWavelengthSets;
+    out_.photons.push_back(photon);
+    splat(flux);
+  }
+
+  void splat(const Spectrum &flux) {
+    const Vec2 offset = pass_.filter.sample(sampler_.get2d(kDimFilter));
+    CameraConnection seen;
+    if (!connect(scene_.camera, surface_.sp.p, sampler_.get2d(kDimLens), ray_.time, seen,
+                 pass_.filter.width() / float(settings_.width), pass_.filter.width() / float(settings_.height)))
+      return;
+    const float x = seen.film_x * float(settings_.width) + offset.x, y = seen.film_y * float(settings_.height) + offset.y;
+    const int *region = settings_.region;
+    if (!(x >= float(region[0]) && x < float(region[2]) && y >= float(region[1]) && y < float(region[3]))) return;
+    if (!(scene_.groups[surface_.sp.instance->group].visibility & OPAL_RAY_CAMERA)) return;
+    const Spectrum f = bsdf_eval_rough(surface_.closures, surface_.sp, seen.to_camera, w_, Transport::Flux);
+    Spectrum radiance = flux * f * (seen.importance * float(settings_.width) * float(settings_.height));
+    if (radiance.is_zero() || !radiance.is_finite()) return;
+    const Vec3 through = transmittance(
+        scene_, {offset_origin(surface_.sp, seen.to_camera), seen.to_camera, 0, seen.distance, ray_.time}, settings_.transparent_depth);
+    ++out_.rays;
+    if (max_component(through) <= 0) return;
+    if (through.x != 1 || through.y != 1 || through.z != 1) radiance *= uplift(through, w_);
+    const uint32_t pixel = (uint32_t(y) - uint32_t(region[1])) * uint32_t(region[2] - region[0]) + (uint32_t(x) - uint32_t(region[0]));
+    out_.splats.push_back({pixel, to_rgb(radiance, w_)});
+    if (settings_.spectral_bins > 0)
+      for (int k = 0; k < kWavelengths; ++k) {
+        if (radiance[k] == 0) continue;
+        const SpectralBin bin = spectral_bin(settings_, w_, k, radiance[k]);
+        out_.spectral.push_back({pixel * uint32_t(settings_.spectral_bins) + bin.index, bin.value});
+      }
+  }
+
+  const PassContext &pass_;
+  const Scene &scene_;
+  const opal_render_settings &settings_;
+  const Sampler sampler_;
+  const uint32_t index_;
+  const Wavelengths &w_;
+  PhotonChunk &out_;
+
+  Ray ray_;
+  uint32_t ray_kind_ = OPAL_RAY_DIFFUSE;
+  InteriorStack interior_;
+  Surface surface_;
+  Spectrum flux_{0.0f}, path_pdf_{1.0f};
+  float start_ = 0;
+  int sharp_events_ = 0, rough_events_ = 0, rough_bounces_ = 0;
+};
+
+}  // namespace
+
+void trace_photons(const PassContext &pass, uint32_t first, uint32_t last, PhotonChunk &out) {
+  for (uint32_t i = first; i < last; ++i) PhotonPath(pass, i, out).trace();
+}
+
+}  // namespace opal
