@@ -210,6 +210,8 @@ class Light:
         Area: edge lengths or axes along local X and Y, before ``transform``.
     spread : float
         Area: full angle, π is Lambertian.
+    soft_falloff : int
+        Point and spot: non-zero lights as a disc that faces each point (Blender's default), zero as a sphere.
     receivers : int
         Light linking: bit i lights receiver set i.
     """
@@ -229,6 +231,7 @@ class Light:
     cast_shadow: int = 1
     normalize: int = 1
     caustics: int = 1
+    soft_falloff: int = 1
     receivers: int = 0xFFFFFFFFFFFFFFFF
 
 
