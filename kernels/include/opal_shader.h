@@ -41,7 +41,6 @@ typedef enum opal_op {
   OPAL_OP_INVERT = 21,         /* factor, color */
   OPAL_OP_GAMMA = 22,          /* color, gamma */
   OPAL_OP_BRIGHT_CONTRAST = 23, /* color, bright, contrast */
-  OPAL_OP_BLACKBODY = 24,      /* temperature (K) -> color */
   OPAL_OP_TABLE = 25,          /* factor, table#, size=; mode: sum of OPAL_TABLE_* -> entry of the table at factor 0..1 */
 
   /* ---- What is known of the point ---- */
