@@ -82,6 +82,33 @@ OPAL_EXPORT int32_t opal_scene_add_image(opal_scene *scene, const opal_image_des
 /* A table over the spectral range (index of refraction, absorption in 1/m, a lamp's relative power...). */
 OPAL_EXPORT int32_t opal_scene_add_spectrum(opal_scene *scene, const float *values);
 
+/* ---- Media ---- */
+
+enum { OPAL_PHASE_ISOTROPIC = 0, OPAL_PHASE_HENYEY_GREENSTEIN = 1, OPAL_PHASE_RAYLEIGH = 2, OPAL_PHASE_TABLE = 3 };
+
+typedef struct opal_phase_desc {
+  int32_t kind;              /* OPAL_PHASE_* */
+  float anisotropy;          /* Henyey-Greenstein: mean cosine, -1..1 */
+  int32_t n_wavelengths, n_angles;
+  const float *wavelengths;  /* table: nm, ascending */
+  const float *angles;       /* table: radians between propagation directions, from 0 to pi, ascending */
+  const float *values;       /* table: n_wavelengths x n_angles, 1/sr; each row is normalised */
+} opal_phase_desc;
+
+OPAL_EXPORT int32_t opal_scene_add_phase(opal_scene *scene, const opal_phase_desc *phase);
+
+/* Spectra from opal_scene_add_spectrum, -1 for none. */
+typedef struct opal_medium_desc {
+  int32_t extinction; /* sigma_t, 1/m */
+  int32_t scattering; /* sigma_s, 1/m */
+  int32_t emission;   /* radiance per metre */
+  int32_t phase;      /* from opal_scene_add_phase, -1: isotropic */
+} opal_medium_desc;
+
+OPAL_EXPORT int32_t opal_scene_add_medium(opal_scene *scene, const opal_medium_desc *medium);
+/* The medium that fills the world, outside of everything too; -1 for none. */
+OPAL_EXPORT int32_t opal_scene_set_world_medium(opal_scene *scene, int32_t medium);
+
 /* ---- Materials: a register program (see opal_shader.h) and an optional gem boundary ---- */
 
 typedef struct opal_instruction {
@@ -115,13 +142,14 @@ typedef struct opal_material_desc {
   opal_program surface;
   const opal_gem_desc *gem; /* non-NULL replaces the surface program by a dielectric boundary */
   uint32_t flags;           /* OPAL_MATERIAL_* */
-  int32_t reserved;
+  int32_t medium;           /* 1 + the medium inside of the closed mesh, from opal_scene_add_medium; 0: none */
 } opal_material_desc;
 
 enum {
   OPAL_MATERIAL_CASTER = 1,   /* may make caustics: has a sharp enough specular lobe */
   OPAL_MATERIAL_EMISSIVE = 2, /* its faces are light sources worth sampling */
-  OPAL_MATERIAL_TRANSPARENT_SHADOW = 4 /* shadow rays must run the program (alpha, Transparent BSDF) */
+  OPAL_MATERIAL_TRANSPARENT_SHADOW = 4, /* shadow rays must run the program (alpha, Transparent BSDF) */
+  OPAL_MATERIAL_NO_SURFACE = 8 /* bounds a medium and nothing else: every ray goes straight through */
 };
 
 OPAL_EXPORT int32_t opal_scene_add_material(opal_scene *scene, const opal_material_desc *material);

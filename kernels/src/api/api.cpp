@@ -74,6 +74,8 @@ Material material_from(const Scene &scene, const opal_material_desc &desc) {
   if (!program_from_desc(desc.surface, int(scene.images.size()), m.surface, &error))
     throw BadArgument(error ? error : "The material's program is not valid");
   m.flags = desc.flags;
+  m.medium = desc.medium - 1;
+  require(m.medium < int(scene.media.size()), "The material names a medium that does not exist");
   if (desc.gem) {
     m.is_gem = true;
     m.gem = *desc.gem;
@@ -167,6 +169,57 @@ int32_t opal_scene_add_spectrum(opal_scene *scene, const float *values) {
     std::copy(values, values + kTableSize, table.begin());
     scene->spectra.push_back(table);
     return int32_t(scene->spectra.size() - 1);
+  });
+}
+
+int32_t opal_scene_add_phase(opal_scene *scene, const opal_phase_desc *desc) {
+  return guarded([&] {
+    require(scene && desc, "No phase function");
+    switch (desc->kind) {
+      case OPAL_PHASE_ISOTROPIC: scene->phases.push_back(PhaseFunction::isotropic()); break;
+      case OPAL_PHASE_HENYEY_GREENSTEIN:
+        require(desc->anisotropy >= -1 && desc->anisotropy <= 1, "The anisotropy is not between -1 and 1");
+        scene->phases.push_back(PhaseFunction::henyey_greenstein(desc->anisotropy));
+        break;
+      case OPAL_PHASE_RAYLEIGH: scene->phases.push_back(PhaseFunction::rayleigh()); break;
+      case OPAL_PHASE_TABLE: {
+        require(desc->n_wavelengths >= 1 && desc->n_angles >= 2 && desc->wavelengths && desc->angles && desc->values,
+                "A table needs at least one wavelength and two angles");
+        const size_t rows = size_t(desc->n_wavelengths), columns = size_t(desc->n_angles);
+        require(all_finite(desc->wavelengths, rows) && all_finite(desc->angles, columns) && all_finite(desc->values, rows * columns),
+                "The phase table has a value that is not finite");
+        require(std::is_sorted(desc->wavelengths, desc->wavelengths + rows) && std::is_sorted(desc->angles, desc->angles + columns),
+                "The phase table's wavelengths and angles must ascend");
+        scene->phases.push_back(
+            PhaseFunction::table(desc->wavelengths, desc->n_wavelengths, desc->angles, desc->n_angles, desc->values));
+        break;
+      }
+      default: throw BadArgument("Unknown kind of phase function");
+    }
+    return int32_t(scene->phases.size() - 1);
+  });
+}
+
+int32_t opal_scene_add_medium(opal_scene *scene, const opal_medium_desc *desc) {
+  return guarded([&] {
+    require(scene && desc, "No medium");
+    const int32_t n = int32_t(scene->spectra.size());
+    require(desc->extinction < n && desc->scattering < n && desc->emission < n, "The medium names a spectrum that does not exist");
+    require(desc->phase < int32_t(scene->phases.size()), "The medium names a phase function that does not exist");
+    for (const int32_t s : {desc->extinction, desc->scattering, desc->emission})
+      if (s >= 0)
+        for (const float v : scene->spectra[size_t(s)]) require(v >= 0, "A medium's coefficient is negative");
+    scene->media.push_back({desc->extinction, desc->scattering, desc->emission, desc->phase});
+    return int32_t(scene->media.size() - 1);
+  });
+}
+
+int32_t opal_scene_set_world_medium(opal_scene *scene, int32_t medium) {
+  return guarded([&] {
+    require(scene && medium < int32_t(scene->media.size()), "No such medium");
+    scene->world_medium = medium;
+    scene->lights_dirty = true;
+    return 0;
   });
 }
 

@@ -73,7 +73,7 @@ enum Dimension : uint32_t {
   kDimEmissionDirection = 10,
   kDimBounce = 16,      // first of the per-bounce blocks
 };
-inline constexpr uint32_t kDimsPerBounce = 16;
+inline constexpr uint32_t kDimsPerBounce = 20;
 enum BounceDimension : uint32_t {
   kDimBsdf = 0,         // 2
   kDimBsdfLobe = 2,     // 1
@@ -81,9 +81,12 @@ enum BounceDimension : uint32_t {
   kDimLight = 4,        // 2
   kDimLightPick = 6,    // 1
   kDimTransparency = 7, // 1
-  kDimMedium = 8,       // 2
+  kDimMedium = 8,       // 1
   kDimMediumPhase = 10, // 2
-  kDimSpare = 12,
+  kDimMediumDistance = 12,  // 2
+  kDimMediumLight = 14,     // 2
+  kDimMediumPick = 16,      // 1
+  kDimSpare = 17,
 };
 constexpr uint32_t bounce_dimension(uint32_t bounce, uint32_t which) { return kDimBounce + bounce * kDimsPerBounce + which; }
 

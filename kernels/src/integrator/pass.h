@@ -5,6 +5,7 @@
 #include "camera/camera.h"
 #include "film/film.h"
 #include "film/pixel_filter.h"
+#include "media/segment.h"
 #include "photons/photon_map.h"
 #include "scene/scene.h"
 
@@ -27,6 +28,7 @@ struct PassContext {
     const float shift = Sampler(settings.seed, kStreamPass, uint32_t(pass)).get1d(0);
     for (int i = 0; i < kPassWavelengths; ++i)
       wavelengths[size_t(i)] = scene.colour.sample((float(i) + shift) / kPassWavelengths);
+    camera_media = media_at(scene, camera_transform(scene.camera, 0).origin());
   }
 
   // Number i of the pass's wavelengths is hero; its set is i mod 8, its position in the set i / 8.
@@ -40,6 +42,7 @@ struct PassContext {
   const int pass;
   std::array<Wavelengths, kPassWavelengths> wavelengths;
   PhotonMap photons;
+  MediumSet camera_media;  // what the camera is in
 };
 
 }  // namespace opal

@@ -42,6 +42,7 @@ class CameraPath {
     const float film_y = (float(y) + 0.5f + offset.y) / float(settings_.height);
     const float time = settings_.motion_blur ? sampler_.get1d(kDimTime) : 0.0f;
     alive_ = generate_ray(scene_.camera, film_x, film_y, sampler_.get2d(kDimLens), time, ray_);
+    media_ = pass.camera_media;
     ++counts_.camera;
   }
 
@@ -57,9 +58,20 @@ class CameraPath {
     const Hit hit = scene_.intersect(ray_, ray_kind_);
     ++counts_.path;
     if (hit.valid()) absorb(scene_, interior_, hit.t, w_, throughput_);
-    meet_lamps(hit.t);
+    if (!media_.empty()) {
+      if (travel_in_medium(hit.t)) return;
+    } else {
+      meet_lamps(hit.t, Spectrum(0.0f));
+    }
     if (!hit.valid()) {
       escape();
+      return;
+    }
+    material_ = &scene_.material_at(hit);
+    if (material_->no_surface()) {
+      surface_.sp = scene_.shading_point(ray_, hit);
+      cross_medium(*material_, surface_.sp, media_);
+      go_straight_on();
       return;
     }
     make_surface(scene_, ray_, hit, ray_kind_, bounces_, interior_, w_, surface_);
@@ -80,11 +92,13 @@ class CameraPath {
 
   // ---- Light that the ray meets ----
 
-  void meet_lamps(float t_end) {
+  // Lamps before t_end; `extinction` is that of the media in which the ray runs.
+  void meet_lamps(float t_end, const Spectrum &extinction) {
     float after = ray_.t_min;
     LampHit lamp;
     while (intersect_lamps(scene_, ray_, after, t_end, ray_kind_, w_, lamp)) {
       const SourceId source{SourceKind::Lamp, lamp.lamp};
+      const Unscattered passed(*this, extinction, lamp.t);
       add_met(source, lamp.radiance, ray_.origin + ray_.direction * lamp.t, lamp.normal, lamp.t + travelled_);
       after = std::nextafter(lamp.t, kInfinity);
     }
@@ -109,10 +123,19 @@ class CameraPath {
     }
   }
 
+  // Whether photons bring what the ray has met.
+  bool brought(const SourceId &source) const {
+    const bool after_rough = last_.event == EventClass::Rough ? rough_events_ > 1 : rough_events_ > 0;
+    return brought_by_photons(scene_, settings_.photons_carry, last_.event, after_rough, source);
+  }
+
   void add_met(const SourceId &source, const Spectrum &radiance, const Vec3 &point, const Vec3 &normal, float distance) {
     if (radiance.is_zero()) return;
-    const bool after_rough = last_.event == EventClass::Rough ? rough_events_ > 1 : rough_events_ > 0;
-    if (bounces_ > 0 && brought_by_photons(scene_, settings_.photons_carry, last_.event, after_rough, source)) return;
+    if (last_.event == EventClass::Sharp && rough_in_medium_) {
+      // Photons are left on surfaces: what a medium scatters is the path's to find.
+    } else if (bounces_ > 0 && brought(source)) {
+      return;
+    }
     Spectrum pdf = path_pdf_;
     if (last_.light_was_sampled && source.kind != SourceKind::None) {
       const float p = light_pdf(scene_, source, last_.p, last_.normal, last_.transmissive, last_.light_group, ray_.direction,
@@ -145,6 +168,7 @@ class CameraPath {
       return;
     }
     if (sample.scattering & kScatterTransparent) {
+      cross_medium(*material_, surface_.sp, media_);
       throughput_ *= sample.weight;
       update_path_pdf(sample);
       if (++transparent_layers_ > uint32_t(std::max(1, settings_.transparent_depth)) || throughput_.is_zero()) alive_ = false;
@@ -183,9 +207,14 @@ class CameraPath {
     ++bounces_;
     ++events_;
     if (!specular) ++rough_bounces_;
-    if (event == EventClass::Rough) ++rough_events_;
-    if (surface_.is_gem && (sample.scattering & kScatterTransmit)) cross_boundary(surface_.boundary, interior_);
-    if (surface_.is_gem && (sample.scattering & kScatterTransmit)) eta_scale_ *= sqr(sample.eta);
+    if (event == EventClass::Rough) ++rough_events_, rough_in_medium_ = false;
+    if (sample.scattering & kScatterTransmit) {
+      if (surface_.is_gem) {
+        cross_boundary(surface_.boundary, interior_);
+        eta_scale_ *= sqr(sample.eta);
+      }
+      cross_medium(*material_, surface_.sp, media_);
+    }
 
     ray_kind_ = sample.scattering & kScatterTransmit  ? uint32_t(OPAL_RAY_TRANSMISSION)
                 : sample.scattering & kScatterDiffuse ? uint32_t(OPAL_RAY_DIFFUSE)
@@ -242,24 +271,155 @@ class CameraPath {
       return;
     const SplitValue value = evaluate(surface_, sample.wi, w_, Transport::Radiance);
     const bool keep_rough = !brought_by_photons(scene_, settings_.photons_carry, EventClass::Rough, rough_events_ > 0, sample.source);
-    const bool keep_sharp = !brought_by_photons(scene_, settings_.photons_carry, EventClass::Sharp, rough_events_ > 0, sample.source);
+    const bool keep_sharp = rough_in_medium_ || !brought_by_photons(scene_, settings_.photons_carry, EventClass::Sharp, rough_events_ > 0, sample.source);
     Spectrum f(0.0f);
     if (keep_rough) f += value.rough;
     if (keep_sharp) f += value.sharp;
     if (f.is_zero()) return;
-    Spectrum pdf = path_pdf_ * sample.pdf;
-    if (!sample.dirac) pdf += path_pdf_ * value.pdf;
-    Spectrum contribution = throughput_ * f * sample.radiance / pdf.average();
+    Spectrum contribution = throughput_ * f * sample.radiance;
     if (contribution.is_zero() || !contribution.is_finite()) return;
-    if (sample.cast_shadow) {
-      const Ray shadow{offset_origin(sp, sample.wi), sample.wi, 0,
-                       std::isfinite(sample.distance) ? sample.distance * (1 - 1e-5f) : kInfinity, ray_.time};
-      ++counts_.shadow;
-      const Vec3 through = transmittance(scene_, shadow, settings_.transparent_depth);
-      if (max_component(through) <= 0) return;
-      if (through.x != 1 || through.y != 1 || through.z != 1) contribution *= uplift(through, w_);
-    }
+    Passage through;
+    if (!passes(offset_origin(sp, sample.wi), sample, through)) return;
+    Spectrum pdf = path_pdf_ * sample.pdf;
+    if (!sample.dirac) pdf += path_pdf_ * value.pdf * through.medium;
+    contribution *= uplift(through.surfaces, w_) * through.medium / pdf.average();
     add_scattered(contribution, value.sharp.sum() > value.rough.sum() && rough_events_ > 0);
+  }
+
+  // What of a light sample arrives; false: nothing.
+  bool passes(const Vec3 &origin, const LightSample &sample, Passage &through) {
+    if (!sample.cast_shadow) return true;
+    const Ray shadow{origin, sample.wi, 0, std::isfinite(sample.distance) ? sample.distance * (1 - 1e-5f) : kInfinity, ray_.time};
+    ++counts_.shadow;
+    through = passage(scene_, shadow, media_, settings_.transparent_depth, w_);
+    return !through.blocked();
+  }
+
+  // ---- Media ----
+
+  // For as long as it lives, throughput and densities are those of having come `t` metres without an event.
+  class Unscattered {
+   public:
+    Unscattered(CameraPath &path, const Spectrum &extinction, float t)
+        : path_(path), throughput_(path.throughput_), path_pdf_(path.path_pdf_), pdf_(path.last_.pdf) {
+      path.pass_unscattered(extinction, t);
+    }
+    ~Unscattered() { path_.throughput_ = throughput_, path_.path_pdf_ = path_pdf_, path_.last_.pdf = pdf_; }
+    Unscattered(const Unscattered &) = delete;
+
+   private:
+    CameraPath &path_;
+    const Spectrum throughput_, path_pdf_;
+    const float pdf_;
+  };
+
+  // Coming through without an event has probability T(hero).
+  void pass_unscattered(const Spectrum &extinction, float t) {
+    if (extinction[0] <= 0 && extinction.max() <= 0) return;
+    for (int i = 0; i < kWavelengths; ++i) {
+      const float ratio = std::exp(clamp((extinction[0] - extinction[i]) * t, -80.0f, 80.0f));
+      throughput_[i] *= ratio, path_pdf_[i] *= ratio;
+    }
+    last_.pdf *= std::exp(-extinction[0] * t);
+  }
+
+  // Carries the ray through its media up to t_end. True: it was scattered or absorbed on the way.
+  bool travel_in_medium(float t_end) {
+    const MediumHere here = medium_here(scene_, media_, w_);
+    const uint32_t dimension = bounce_dimension(events_, 0);
+    const bool may_go_on = rough_bounces_ < uint32_t(std::max(0, settings_.max_depth));
+    if (!here.emission.is_zero()) add_emitted(here, t_end);
+    if (here.scatters() && (may_go_on || bounces_ == 0)) gather_along(here, t_end, dimension);
+
+    const float sigma = here.extinction[0];
+    const float t = sigma > 0 ? -std::log1p(-sampler_.get1d(dimension + kDimMedium)) / sigma : kInfinity;
+    meet_lamps(std::min(t, t_end), here.extinction);
+    if (!(t < t_end)) {
+      if (std::isfinite(t_end)) pass_unscattered(here.extinction, t_end);
+      else if (sigma > 0) alive_ = false;
+      return !alive_;
+    }
+    if (!may_go_on || !(here.scattering[0] > 0)) {
+      alive_ = false;
+      return true;
+    }
+
+    const GatherDistance gathered(scene_, ray_, t_end, here.extinction.average());
+    const Spectrum through = transmittance_over(here.extinction, t);
+    const float distance_pdf = sigma * through[0];
+    previous_pdf_ = path_pdf_ * (gathered.density(t) / distance_pdf);
+    float phase_pdf = 0;
+    const Vec3 forward = ray_.direction;
+    const Vec3 direction = here.sample_phase(w_, forward, sampler_.get1d(dimension + kDimBsdfLobe),
+                                             sampler_.get2d(dimension + kDimMediumPhase), phase_pdf);
+    const Spectrum phase = here.phase_value(w_, dot(forward, direction));
+    if (!(phase_pdf > 0) || !(distance_pdf > 0)) {
+      alive_ = false;
+      return true;
+    }
+    throughput_ *= through * here.scattering * phase / (distance_pdf * phase_pdf);
+    path_pdf_ *= through * here.extinction * phase / (distance_pdf * phase_pdf);
+    if (!throughput_.is_finite() || throughput_.is_zero()) {
+      alive_ = false;
+      return true;
+    }
+    last_ = {};
+    last_.light_was_sampled = true;
+    last_.event = EventClass::Rough;
+    last_.p = ray_.origin + ray_.direction * t;
+    last_.transmissive = true;
+    last_.pdf = phase_pdf;
+    if (bounces_ == 0) medium_first_ = true;
+    ++bounces_, ++events_, ++rough_bounces_, ++rough_events_;
+    rough_in_medium_ = true;
+    ray_kind_ = OPAL_RAY_SCATTER;
+    ray_ = {last_.p, direction, 0, kInfinity, ray_.time};
+    travelled_ = 0;
+    roulette(sampler_.get1d(dimension + kDimRoulette));
+    return true;
+  }
+
+  // Emission over the segment, in closed form: e (1 - exp(-sigma t)) / sigma.
+  void add_emitted(const MediumHere &here, float t_end) {
+    Spectrum emitted(0.0f);
+    for (int i = 0; i < kWavelengths; ++i) {
+      const float sigma = here.extinction[i];
+      const float depth = sigma > 0 ? -std::expm1(-sigma * t_end) / sigma : t_end;
+      if (std::isfinite(depth)) emitted[i] = here.emission[i] * depth;
+    }
+    const bool first = medium_first_;
+    if (bounces_ == 0) medium_first_ = true;
+    add(throughput_ * emitted / path_pdf_.average(), false);
+    medium_first_ = first;
+  }
+
+  // Light that reaches the segment directly and is scattered once into it: the other half of hitting a source after a
+  // scattering event, joined with it by multiple importance.
+  void gather_along(const MediumHere &here, float t_end, uint32_t dimension) {
+    const GatherDistance distances(scene_, ray_, t_end, here.extinction.average());
+    float distance_pdf = 0;
+    const Vec2 u = sampler_.get2d(dimension + kDimMediumDistance);
+    const float t = distances.sample(u.x, u.y, distance_pdf);
+    if (!(distance_pdf > 0) || !std::isfinite(t)) return;
+    const Vec3 p = ray_.origin + ray_.direction * t;
+    LightSample sample;
+    if (!sample_light(scene_, p, {}, true, -1, sampler_.get1d(dimension + kDimMediumPick),
+                      sampler_.get2d(dimension + kDimMediumLight), w_, ray_.time, sample) ||
+        !(sample.pdf > 0))
+      return;
+    const Spectrum phase = here.phase_value(w_, dot(ray_.direction, sample.wi));
+    const Spectrum through = transmittance_over(here.extinction, t);
+    Spectrum contribution = throughput_ * through * here.scattering * phase * sample.radiance;
+    if (contribution.is_zero() || !contribution.is_finite()) return;
+    Passage passed;
+    if (!passes(p, sample, passed)) return;
+    Spectrum pdf = path_pdf_ * (distance_pdf * sample.pdf);
+    if (!sample.dirac) pdf += path_pdf_ * here.extinction * through * phase * passed.medium;
+    contribution *= uplift(passed.surfaces, w_) * passed.medium / pdf.average();
+    const bool first = medium_first_;
+    if (bounces_ == 0) medium_first_ = true;
+    add_scattered(contribution, false);
+    medium_first_ = first;
   }
 
   // ---- Photons ----
@@ -289,7 +449,7 @@ class CameraPath {
       const float sum = std::abs(rgb.x) + std::abs(rgb.y) + std::abs(rgb.z);
       if (sum > limit * 3) rgb *= limit * 3 / sum, radiance *= limit * 3 / sum;
     }
-    (caustic ? light_.caustics : events == 0 ? light_.emission : events == 1 ? light_.direct : light_.indirect) += rgb;
+    (medium_first_ ? light_.medium : caustic ? light_.caustics : events == 0 ? light_.emission : events == 1 ? light_.direct : light_.indirect) += rgb;
     light_.spectral += radiance;
   }
 
@@ -317,6 +477,8 @@ class CameraPath {
   Ray ray_;
   uint32_t ray_kind_ = OPAL_RAY_CAMERA;
   InteriorStack interior_;
+  MediumSet media_;
+  const Material *material_ = nullptr;
   Surface surface_;
   LastEvent last_;
   PathLight light_;
@@ -328,6 +490,8 @@ class CameraPath {
   uint32_t rough_events_ = 0;   // of class Rough
   uint32_t transparent_layers_ = 0;
   bool alive_ = true;
+  bool rough_in_medium_ = false;  // the last rough event was a medium's
+  bool medium_first_ = false;     // the first event was a medium's
   bool final_ray_ = false;      // only lamps are looked for: photons bring everything else
 };
 

@@ -13,6 +13,7 @@ struct PathLight {
   Vec3 direct;     // one event
   Vec3 indirect;   // more than one
   Vec3 caustics;   // a rough event lit through sharp ones
+  Vec3 medium;     // whose first event, or whose source, is in a medium
   float alpha = 1;
   // Guides, of the first event that is not straight through.
   Vec3 normal, position, albedo;

@@ -109,13 +109,14 @@ bool Render::trace_camera_of(const PassContext &pass, PassBuffer &buffer, const 
 
   const auto render_pixel = [&](int x, int y, RayCounts &counts) {
     const size_t pixel = size_t(y) * size_t(w) + size_t(x);
-    Vec3 emission, direct, indirect, caustics, normal, position, albedo;
+    Vec3 emission, direct, indirect, caustics, medium, normal, position, albedo;
     float alpha = 0, depth = 0;
     int hits = 0;
     for (int s = 0; s < samples; ++s) {
       const PathLight light = trace_camera_path(pass, uint32_t(x + settings_.region[0]), uint32_t(y + settings_.region[1]),
                                                 uint32_t(s), counts);
       emission += light.emission, direct += light.direct, indirect += light.indirect, caustics += light.caustics;
+      medium += light.medium;
       alpha += light.alpha;
       if (light.hit) normal += light.normal, position += light.position, albedo += light.albedo, ++hits;
       if (s == 0) depth = light.hit ? light.depth : 1e10f;
@@ -128,14 +129,15 @@ bool Render::trace_camera_of(const PassContext &pass, PassBuffer &buffer, const 
     }
     const float light_scale = scale * exposure;
     caustics = caustics * light_scale + splats[pixel] * exposure;
-    emission *= light_scale, direct *= light_scale, indirect *= light_scale;
+    emission *= light_scale, direct *= light_scale, indirect *= light_scale, medium *= light_scale;
     float *combined = buffer.at(OPAL_PASS_COMBINED, pixel);
-    put(combined, emission + direct + indirect + caustics);
+    put(combined, emission + direct + indirect + caustics + medium);
     combined[3] = alpha * scale;
     if (buffer.has(OPAL_PASS_EMISSION)) put(buffer.at(OPAL_PASS_EMISSION, pixel), emission);
     if (buffer.has(OPAL_PASS_DIRECT)) put(buffer.at(OPAL_PASS_DIRECT, pixel), direct);
     if (buffer.has(OPAL_PASS_INDIRECT)) put(buffer.at(OPAL_PASS_INDIRECT, pixel), indirect);
     if (buffer.has(OPAL_PASS_CAUSTICS)) put(buffer.at(OPAL_PASS_CAUSTICS, pixel), caustics);
+    if (buffer.has(OPAL_PASS_MEDIUM)) put(buffer.at(OPAL_PASS_MEDIUM, pixel), medium);
     if (buffer.has(OPAL_PASS_DEPTH)) *buffer.at(OPAL_PASS_DEPTH, pixel) = depth;
     if (buffer.has(OPAL_PASS_NORMAL)) put(buffer.at(OPAL_PASS_NORMAL, pixel), normal * scale);
     if (buffer.has(OPAL_PASS_POSITION)) put(buffer.at(OPAL_PASS_POSITION, pixel), hits ? position / float(hits) : Vec3{});

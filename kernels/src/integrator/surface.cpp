@@ -67,22 +67,36 @@ EventClass classify(const Surface &surface, const BsdfSample &sample, const Wave
   return u * total < value.sharp.sum() ? EventClass::Sharp : EventClass::Rough;
 }
 
-Vec3 transmittance(const Scene &scene, const Ray &ray, int max_layers) {
-  if (!scene.any_transparent_shadow) return scene.occluded(ray, OPAL_RAY_SHADOW) ? Vec3{} : Vec3{1, 1, 1};
-  Vec3 through{1, 1, 1};
+Passage passage(const Scene &scene, const Ray &ray, MediumSet media, int max_layers, const Wavelengths &w) {
+  Passage result;
+  const auto attenuate = [&](float distance) {
+    if (!media.empty()) result.medium *= transmittance_over(medium_here(scene, media, w).extinction, distance);
+  };
+  if (!scene.any_transparent_shadow) {  // nothing to look through, so no boundary of a medium either
+    if (scene.occluded(ray, OPAL_RAY_SHADOW)) result.surfaces = {};
+    else attenuate(ray.t_max);
+    return result;
+  }
   Ray rest = ray;
-  for (int layer = 0;; ++layer) {
+  for (int layer = 0;;) {
     const Hit hit = scene.intersect(rest, OPAL_RAY_SHADOW);
-    if (!hit.valid()) return through;
+    attenuate(std::min(hit.t, rest.t_max));
+    if (!hit.valid()) return result;
     const Material &material = scene.material_at(hit);
-    if (layer >= max_layers || material.is_gem || !(material.flags & OPAL_MATERIAL_TRANSPARENT_SHADOW)) return {};
     ShadingPoint sp = scene.shading_point(rest, hit);
     sp.ray_kind = OPAL_RAY_SHADOW;
-    through *= run_transparency(scene, material.surface, sp);
-    if (max_component(through) <= 0) return {};
+    if (!material.no_surface()) {
+      if (layer++ >= max_layers || material.is_gem || !(material.flags & OPAL_MATERIAL_TRANSPARENT_SHADOW)) {
+        result.surfaces = {};
+        return result;
+      }
+      result.surfaces *= run_transparency(scene, material.surface, sp);
+      if (result.blocked()) return result;
+    }
+    cross_medium(material, sp, media);
     rest.origin = offset_origin(sp, rest.direction);
     rest.t_max -= hit.t;
-    if (!(rest.t_max > 0)) return through;
+    if (!(rest.t_max > 0)) return result;
   }
 }
 

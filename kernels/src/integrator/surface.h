@@ -4,6 +4,7 @@
 
 #include "bsdf/closure.h"
 #include "integrator/path_class.h"
+#include "media/segment.h"
 #include "scene/interior.h"
 #include "scene/scene.h"
 
@@ -33,8 +34,13 @@ SplitValue evaluate(const Surface &surface, const Vec3 &wi, const Wavelengths &w
 // The class of a sampled event: of a sum of rough and sharp lobes the sharp share is taken with its probability (`u`).
 EventClass classify(const Surface &surface, const BsdfSample &sample, const Wavelengths &w, Transport transport, float u);
 
-// The fraction of light that passes from `origin` towards a point at `distance` (infinite for the sky): 0 behind opaque
-// things, the product of the straight-through transmittances otherwise. At most `max_layers` are looked through.
-Vec3 transmittance(const Scene &scene, const Ray &ray, int max_layers);
+// What passes along a shadow ray that starts in `media`: `surfaces` is 0 behind opaque things, else the product of the
+// straight-through transmittances of at most `max_layers` surfaces (linear Rec.709); `medium` is the media's share.
+struct Passage {
+  Vec3 surfaces{1, 1, 1};
+  Spectrum medium{1.0f};
+  bool blocked() const { return max_component(surfaces) <= 0; }
+};
+Passage passage(const Scene &scene, const Ray &ray, MediumSet media, int max_layers, const Wavelengths &w);
 
 }  // namespace opal

@@ -40,6 +40,7 @@ class PhotonPath {
     ray_ = sample.ray;
     flux_ = sample.flux * (1.0f / float(settings_.photons_per_pass));
     start_ = flux_.max();
+    media_ = scene_.any_medium ? media_at(scene_, ray_.origin) : MediumSet{};
     return flux_.is_finite() && start_ > 0;
   }
 
@@ -47,8 +48,24 @@ class PhotonPath {
     const uint32_t kind = sharp_events_ + rough_events_ == 0 ? uint32_t(OPAL_RAY_ALL & ~OPAL_RAY_CAMERA) : ray_kind_;
     const Hit hit = scene_.intersect(ray_, kind);
     ++out_.rays;
+    if (!media_.empty()) {
+      const MediumHere here = medium_here(scene_, media_, w_);
+      if (photon_goes_on(settings_.photons_carry)) {
+        bool alive = true;
+        if (scatter_in_medium(here, hit.t, bounce_dimension(events, 0), alive)) return alive;
+      } else {  // what media scatter is left to the camera's paths; the photon carries on what passes
+        flux_ *= transmittance_over(here.extinction, hit.valid() ? hit.t : 0);
+      }
+    }
     if (!hit.valid()) return false;
     absorb(scene_, interior_, hit.t, w_, flux_);
+    const Material &material = scene_.material_at(hit);
+    if (material.no_surface()) {
+      surface_.sp = scene_.shading_point(ray_, hit);
+      cross_medium(material, surface_.sp, media_);
+      go_on(ray_.direction);
+      return true;
+    }
     make_surface(scene_, ray_, hit, ray_kind_, uint32_t(sharp_events_ + rough_events_), interior_, w_, surface_);
     if (surface_.nothing) {
       cross_boundary(surface_.boundary, interior_);
@@ -70,6 +87,7 @@ class PhotonPath {
     }
     if (!flux_.is_finite() || flux_.is_zero()) return false;
     if (sample.scattering & kScatterTransparent) {
+      cross_medium(material, surface_.sp, media_);
       go_on(ray_.direction);
       return true;
     }
@@ -77,7 +95,10 @@ class PhotonPath {
     if (event == EventClass::Rough && !photon_goes_on(settings_.photons_carry)) return false;
     (event == EventClass::Rough ? rough_events_ : sharp_events_) += 1;
     if (!(sample.scattering & kScatterSpecular) && ++rough_bounces_ > settings_.max_depth) return false;
-    if (surface_.is_gem && (sample.scattering & kScatterTransmit)) cross_boundary(surface_.boundary, interior_);
+    if (sample.scattering & kScatterTransmit) {
+      if (surface_.is_gem) cross_boundary(surface_.boundary, interior_);
+      cross_medium(material, surface_.sp, media_);
+    }
     ray_kind_ = sample.scattering & kScatterTransmit  ? uint32_t(OPAL_RAY_TRANSMISSION)
                 : sample.scattering & kScatterDiffuse ? uint32_t(OPAL_RAY_DIFFUSE)
                                                       : uint32_t(OPAL_RAY_GLOSSY);
@@ -88,6 +109,39 @@ class PhotonPath {
       if (!(sampler_.get1d(dimension + kDimRoulette) < survive)) return false;
       flux_ *= 1 / survive;
     }
+    return true;
+  }
+
+  // A free path in the media; true: it ended before t_end, with a scattering (alive) or an absorption.
+  bool scatter_in_medium(const MediumHere &here, float t_end, uint32_t dimension, bool &alive) {
+    const float sigma = here.extinction[0];
+    if (!(sigma > 0)) return false;
+    const float t = -std::log1p(-sampler_.get1d(dimension + kDimMedium)) / sigma;
+    const Spectrum through = transmittance_over(here.extinction, std::min(t, t_end));
+    if (!(t < t_end)) {
+      for (int i = 0; i < kWavelengths; ++i) {
+        flux_[i] *= through[0] > 0 ? through[i] / through[0] : 0;
+        path_pdf_[i] *= through[0] > 0 ? through[i] / through[0] : 0;
+      }
+      return false;
+    }
+    float phase_pdf = 0;
+    const Vec3 forward = ray_.direction;
+    const Vec3 direction = here.scatters() ? here.sample_phase(w_, forward, sampler_.get1d(dimension + kDimBsdfLobe),
+                                                               sampler_.get2d(dimension + kDimMediumPhase), phase_pdf)
+                                           : Vec3{};
+    const float pdf = sigma * through[0] * phase_pdf;
+    // Absorbed with the albedo's complement.
+    const float albedo = here.scattering[0] / sigma;
+    alive = pdf > 0 && sampler_.get1d(dimension + kDimRoulette) < albedo && ++rough_bounces_ <= settings_.max_depth;
+    if (!alive) return true;
+    const Spectrum phase = here.phase_value(w_, dot(forward, direction));
+    flux_ *= through * here.scattering * phase / (pdf * albedo);
+    path_pdf_ *= through * here.extinction * phase / pdf;
+    alive = flux_.is_finite() && !flux_.is_zero();
+    ++rough_events_;
+    ray_kind_ = OPAL_RAY_SCATTER;
+    ray_ = {ray_.origin + forward * t, direction, 0, kInfinity, ray_.time};
     return true;
   }
 
@@ -130,11 +184,11 @@ class PhotonPath {
     const Spectrum f = bsdf_eval_rough(surface_.closures, surface_.sp, seen.to_camera, w_, Transport::Flux);
     Spectrum radiance = flux * f * (seen.importance * float(settings_.width) * float(settings_.height));
     if (radiance.is_zero() || !radiance.is_finite()) return;
-    const Vec3 through = transmittance(
-        scene_, {offset_origin(surface_.sp, seen.to_camera), seen.to_camera, 0, seen.distance, ray_.time}, settings_.transparent_depth);
+    const Ray shadow{offset_origin(surface_.sp, seen.to_camera), seen.to_camera, 0, seen.distance, ray_.time};
+    const Passage through = passage(scene_, shadow, media_, settings_.transparent_depth, w_);
     ++out_.rays;
-    if (max_component(through) <= 0) return;
-    if (through.x != 1 || through.y != 1 || through.z != 1) radiance *= uplift(through, w_);
+    if (through.blocked()) return;
+    radiance *= uplift(through.surfaces, w_) * through.medium;
     const uint32_t pixel = (uint32_t(y) - uint32_t(region[1])) * uint32_t(region[2] - region[0]) + (uint32_t(x) - uint32_t(region[0]));
     out_.splats.push_back({pixel, to_rgb(radiance, w_)});
     if (settings_.spectral_bins > 0)
@@ -156,6 +210,7 @@ class PhotonPath {
   Ray ray_;
   uint32_t ray_kind_ = OPAL_RAY_DIFFUSE;
   InteriorStack interior_;
+  MediumSet media_;
   Surface surface_;
   Spectrum flux_{0.0f}, path_pdf_{1.0f};
   float start_ = 0;

@@ -216,7 +216,11 @@ void Scene::commit() {
   }
   if (geometry_dirty || instances_dirty || lights_dirty) {
     any_transparent_shadow = false;
-    for (const Material &m : materials) any_transparent_shadow |= (m.flags & OPAL_MATERIAL_TRANSPARENT_SHADOW) != 0;
+    any_medium = world_medium >= 0;
+    for (const Material &m : materials) {
+      any_transparent_shadow |= (m.flags & (OPAL_MATERIAL_TRANSPARENT_SHADOW | OPAL_MATERIAL_NO_SURFACE)) != 0;
+      any_medium |= m.medium >= 0;
+    }
     collect_casters(*this);
     collect_emissive(*this);
     lights = build_light_tables(*this);

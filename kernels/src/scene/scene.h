@@ -5,6 +5,7 @@
 #include "core/colour.h"
 #include "core/vec.h"
 #include "lights/lights.h"
+#include "media/medium.h"
 #include "opal.h"
 #include "scene/embree_api.h"
 #include "shader/shader.h"
@@ -66,7 +67,9 @@ struct Material {
   Program surface;
   bool is_gem = false;
   opal_gem_desc gem{};
+  int medium = -1;  // inside of the mesh
   uint32_t flags = 0;
+  bool no_surface() const { return (flags & OPAL_MATERIAL_NO_SURFACE) != 0; }
 };
 
 struct EmissiveTriangle {
@@ -107,6 +110,9 @@ struct Scene {
 
   std::vector<Image> images;
   std::vector<SpectralTable> spectra;
+  std::vector<PhaseFunction> phases;
+  std::vector<Medium> media;
+  int world_medium = -1;
   std::vector<Material> materials;
   std::vector<std::unique_ptr<Mesh>> meshes;
   std::vector<Instance> instances;
@@ -123,6 +129,7 @@ struct Scene {
   std::shared_ptr<LightTables> lights;
   double build_seconds = 0;
   bool any_transparent_shadow = false;      // a material that shadow rays must look through
+  bool any_medium = false;                  // rays must keep track of what they are in
   bool geometry_dirty = true, instances_dirty = true, lights_dirty = true;
 
   Hit intersect(const Ray &ray, uint32_t visibility) const;

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "media/segment.h"
+
+#include "scene/interior.h"
+
+namespace opal {
+
+MediumHere medium_here(const Scene &scene, const MediumSet &set, const Wavelengths &w) {
+  static const PhaseFunction kIsotropic = PhaseFunction::isotropic();
+  MediumHere here;
+  for (int i = 0; i < set.count(); ++i) {
+    const Medium &medium = scene.media[size_t(set[i].medium)];
+    const auto table = [&](int s) { return s >= 0 ? lookup(scene.spectra[size_t(s)], w) : Spectrum(0.0f); };
+    here.extinction += table(medium.extinction);
+    here.emission += table(medium.emission);
+    const Spectrum scattering = table(medium.scattering);
+    if (scattering.is_zero()) continue;
+    here.scattering += scattering;
+    here.part[here.n] = scattering;
+    here.phase[here.n++] = medium.phase >= 0 ? &scene.phases[size_t(medium.phase)] : &kIsotropic;
+  }
+  return here;
+}
+
+Spectrum MediumHere::phase_value(const Wavelengths &w, float cosine) const {
+  if (n == 1) return phase[0]->value(w, cosine);
+  Spectrum sum(0.0f);
+  for (int i = 0; i < n; ++i) sum += part[i] * phase[i]->value(w, cosine);
+  for (int k = 0; k < kWavelengths; ++k) sum[k] = scattering[k] > 0 ? sum[k] / scattering[k] : 0.0f;
+  return sum;
+}
+
+Vec3 MediumHere::sample_phase(const Wavelengths &w, const Vec3 &forward, float pick, Vec2 u, float &density) const {
+  int chosen = 0;
+  if (n > 1) {
+    float below = 0;
+    for (int i = 0; i < n; ++i) {
+      const float share = part[i][0] / scattering[0];
+      if (pick < below + share || i == n - 1) {
+        pick = saturate((pick - below) / std::max(share, 1e-9f));
+        chosen = i;
+        break;
+      }
+      below += share;
+    }
+  }
+  const Vec3 direction = phase[chosen]->sample(w.nm[0], forward, std::min(pick, 0x1.fffffep-1f), u, density);
+  if (n > 1) density = phase_value(w, dot(forward, direction))[0];
+  return direction;
+}
+
+Spectrum transmittance_over(const Spectrum &extinction, float t) {
+  Spectrum s;
+  for (int i = 0; i < kWavelengths; ++i) s[i] = extinction[i] > 0 ? std::exp(-extinction[i] * t) : 1.0f;
+  return s;
+}
+
+GatherDistance::GatherDistance(const Scene &scene, const Ray &ray, float t_max, float extinction)
+    : t_max_(t_max), extinction_(extinction), share_(1) {
+  for (const opal::Lamp &lamp : scene.lamps) {
+    if (lamp.desc.type == OPAL_LIGHT_SUN) continue;
+    if (n_lamps_ == kMostLamps) break;
+    Lamp &l = lamps_[n_lamps_++];
+    const Vec3 to_lamp = lamp.position - ray.origin;
+    l.foot = dot(to_lamp, ray.direction);
+    // A lamp on the ray itself would make the density infinite; its own size is a fair least distance.
+    const float least = 1e-3f * length(to_lamp) + lamp.desc.radius;
+    l.height = std::max(length(to_lamp - ray.direction * l.foot), least);
+    l.theta_a = std::atan2(-l.foot, l.height);
+    l.theta_b = std::isfinite(t_max) ? std::atan2(t_max - l.foot, l.height) : 0.5f * kPi;
+  }
+  if (n_lamps_ > 0) share_ = 0.5f;
+  if (!(extinction_ > 0) && !std::isfinite(t_max)) share_ = n_lamps_ > 0 ? 0.0f : 1.0f;
+}
+
+float GatherDistance::exponential_density(float t) const {
+  if (!(extinction_ > 0)) return std::isfinite(t_max_) ? 1 / t_max_ : 0.0f;
+  const float all = std::isfinite(t_max_) ? -std::expm1(-extinction_ * t_max_) : 1.0f;
+  return all > 0 ? extinction_ * std::exp(-extinction_ * t) / all : 0.0f;
+}
+
+float GatherDistance::equiangular_density(const Lamp &l, float t) const {
+  const float span = l.theta_b - l.theta_a;
+  return span > 0 ? l.height / (span * (sqr(l.height) + sqr(t - l.foot))) : 0.0f;
+}
+
+float GatherDistance::density(float t) const {
+  float d = share_ * exponential_density(t);
+  for (int i = 0; i < n_lamps_; ++i) d += (1 - share_) / float(n_lamps_) * equiangular_density(lamps_[i], t);
+  return d;
+}
+
+float GatherDistance::sample(float pick, float u, float &density_out) const {
+  float t;
+  if (pick < share_) {
+    if (extinction_ > 0) {
+      const float all = std::isfinite(t_max_) ? -std::expm1(-extinction_ * t_max_) : 1.0f;
+      t = -std::log1p(-u * all) / extinction_;
+    } else {
+      t = u * t_max_;
+    }
+  } else {
+    const int i = std::min(int((pick - share_) / (1 - share_) * float(n_lamps_)), n_lamps_ - 1);
+    const Lamp &l = lamps_[i];
+    t = l.foot + l.height * std::tan(lerp(l.theta_a, l.theta_b, u));
+  }
+  t = clamp(t, 0.0f, t_max_);
+  density_out = density(t);
+  return t;
+}
+
+MediumSet media_at(const Scene &scene, const Vec3 &p) {
+  MediumSet entered;  // boundaries of what lies further along the ray
+  MediumSet result;
+  if (scene.world_medium >= 0) result.enter(~0u, scene.world_medium);
+  if (!scene.any_medium) return result;
+  Ray ray{p, normalize(Vec3{0.3017f, 0.5211f, 0.7984f})};
+  for (int i = 0; i < 256; ++i) {
+    const Hit hit = scene.intersect(ray, ~0u);
+    if (!hit.valid()) break;
+    const ShadingPoint sp = scene.shading_point(ray, hit);
+    const int medium = scene.material_at(hit).medium;
+    if (medium >= 0) {
+      if (!sp.backfacing) {
+        entered.enter(sp.instance_index, medium);
+      } else {
+        const int before = entered.count();
+        entered.leave(sp.instance_index, medium);
+        if (entered.count() == before) result.enter(sp.instance_index, medium);
+      }
+    }
+    ray.origin = offset_origin(sp, ray.direction);
+  }
+  return result;
+}
+
+}  // namespace opal

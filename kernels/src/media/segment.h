@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The media along one ray segment, homogeneous: coefficients that add, the mixed phase function, free paths and the
+// places where light is gathered along a ray.
+#pragma once
+
+#include "core/sampler.h"
+#include "scene/scene.h"
+
+namespace opal {
+
+// What a ray is in at the path's wavelengths.
+struct MediumHere {
+  Spectrum extinction{0.0f}, scattering{0.0f}, emission{0.0f};
+  int n = 0;
+  const PhaseFunction *phase[MediumSet::kCapacity] = {};
+  Spectrum part[MediumSet::kCapacity];  // of the scattering, by medium
+
+  // The phase functions' mixture, at every wavelength.
+  Spectrum phase_value(const Wavelengths &w, float cosine) const;
+  // A direction to scatter into; density is phase_value at the hero.
+  Vec3 sample_phase(const Wavelengths &w, const Vec3 &forward, float pick, Vec2 u, float &density) const;
+  bool scatters() const { return scattering.max() > 0; }
+};
+
+MediumHere medium_here(const Scene &scene, const MediumSet &set, const Wavelengths &w);
+
+// exp(-extinction t); extinction 0 over an infinite distance is 1.
+Spectrum transmittance_over(const Spectrum &extinction, float t);
+
+// Where along a segment direct light is gathered: half by the hero's transmittance, truncated to the segment, half
+// equiangular about the finite lamps (Kulla & Fajardo 2012), as one mixture whose density is known at every t.
+class GatherDistance {
+ public:
+  GatherDistance(const Scene &scene, const Ray &ray, float t_max, float extinction);
+  float sample(float pick, float u, float &density) const;
+  float density(float t) const;
+
+ private:
+  struct Lamp {
+    float foot, height, theta_a, theta_b;
+  };
+  float exponential_density(float t) const;
+  float equiangular_density(const Lamp &lamp, float t) const;
+
+  static constexpr int kMostLamps = 8;
+  Lamp lamps_[kMostLamps];
+  int n_lamps_ = 0;
+  float t_max_, extinction_, share_;  // share_: of the exponential part
+};
+
+// Follows the media through boundaries met by a ray.
+inline void cross_medium(const Material &material, const ShadingPoint &sp, MediumSet &set) {
+  if (material.medium < 0) return;
+  if (sp.backfacing) set.leave(sp.instance_index, material.medium);
+  else set.enter(sp.instance_index, material.medium);
+}
+
+// The media at a point, found by looking along a ray for boundaries that are left without having been entered.
+MediumSet media_at(const Scene &scene, const Vec3 &p);
+
+}  // namespace opal
