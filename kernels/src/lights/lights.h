@@ -32,6 +32,7 @@ struct LightSample {
   float pdf = 0;         // solid angle, with the probability of choosing this source; Dirac: that probability alone
   bool dirac = false;    // no ray can hit it by chance
   bool cast_shadow = true;
+  uint32_t visibility = ~0u;  // OPAL_RAY_* bits: a lobe whose kind of ray may not see the lamp is not lit by it
   SourceId source;
 };
 
@@ -72,9 +73,16 @@ struct EmissionSample {
   Spectrum flux;        // emitted power / pdf: what one photon of M carries is flux / M
   Vec3 normal;          // of the source; zero where it has none
   SourceId source;
+  Vec3 centre;          // with soft_radius: of the lamp
+  float soft_radius = 0;
 };
+// Whether the photon counts at the first thing that it meets. A lamp with soft falloff is a disc that faces whatever it
+// lights, which is less than the sphere that photons leave: those that p's disc could not have sent are dropped, so
+// that photons and next-event estimation bring the same light. Always true for other sources.
+bool emission_reaches(const EmissionSample &sample, const Vec3 &p);
 // Emits one photon. With targets, only directions that can meet one of them are sampled (probability counted exactly,
-// overlaps included); without, the whole emission into the scene's bounding sphere.
+// overlaps included); without, the whole emission into the scene's bounding sphere. A photon for which false is returned
+// carries nothing; it counts among the M all the same. Fastest with Scene::casters itself or an empty vector.
 bool sample_emission(const Scene &scene, const std::vector<EmissionTarget> &targets, Vec2 pick, Vec2 position,
                      Vec2 direction, float time, const Wavelengths &w, EmissionSample &out);
 

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Preparing a lamp from its description; sending each question to the lamp's kind.
+#include "lights/lamp.h"
+
+#include "lights/directions.h"
+#include "lights/lamp_area.h"
+#include "lights/lamp_round.h"
+
+#include <cstring>
+
+namespace opal {
+namespace {
+
+bool describe_round(const opal_light_desc &d, const Transform &t, LampModel &lamp) {
+  lamp.radius = std::max(d.radius, 0.0f);
+  const float area = 4 * kPi * sqr(lamp.radius);
+  // Unnormalised lamps keep their radiance when resized; without a size it stands for an intensity.
+  lamp.radiance = d.power * kInvPi / (d.normalize && area > 0 ? area : 1.0f);
+  lamp.intensity = area > 0 ? lamp.radiance * kPi * sqr(lamp.radius) : d.power * kInvPi * (d.normalize ? 0.25f : 1.0f);
+  lamp.sphere = !d.soft_falloff && area > 0;
+  if (d.type == OPAL_LIGHT_POINT) return true;
+  lamp.to_local = inverse(t);
+  const float half = 0.5f * clamp(d.spot_angle, 0.0f, kPi);
+  lamp.cos_half = std::cos(half);
+  lamp.inverse_blend = 1 / std::max(one_minus_cos(half) * saturate(d.spot_blend), 1e-12f);
+  const float w2 = length_squared(t.axis(2));
+  const float uv2 = std::max(length_squared(t.axis(0)), length_squared(t.axis(1)));
+  const float tan2 = sqr(std::tan(half)) * uv2 / w2;
+  lamp.cone_omc = half < 0.4999f * kPi ? one_minus_cos_from_sin2(tan2 / (1 + tan2)) : 1.0f;
+  return t.determinant() != 0 && half > 0;
+}
+
+bool describe_area(const opal_light_desc &d, const Transform &t, LampModel &lamp) {
+  lamp.ellipse = d.type == OPAL_LIGHT_ELLIPSE;
+  const Vec3 x = t.axis(0), y = t.axis(1);
+  lamp.half_u = 0.5f * length(x) * std::abs(d.size_u);
+  lamp.half_v = 0.5f * length(y) * std::abs(d.size_v);
+  lamp.area = lamp.half_u * lamp.half_v * (lamp.ellipse ? kPi : 4.0f);
+  const Frame f = Frame::from_zx(lamp.axis, safe_normalize(x, {1, 0, 0}));
+  lamp.u = f.x, lamp.v = f.y;
+  lamp.radiance = d.power * kInvPi / (d.normalize ? lamp.area : 1.0f);
+  if (d.spread < kPi) {
+    const double s = 0.5 * std::max(d.spread, 0.0f);
+    lamp.has_spread = true;
+    lamp.tan_spread = float(std::tan(s));
+    lamp.spread_scale = float(s > 0.01 ? 1 / (std::tan(s) - s) : 3 / (s * s * s * (1 + 0.4 * s * s)));
+  }
+  lamp.intensity = lamp.radiance * lamp.area * (lamp.parallel() ? kPi : spread_attenuation(lamp, 1));
+  return lamp.area > 0;
+}
+
+bool describe_sun(const opal_light_desc &d, LampModel &lamp) {
+  const float half = clamp(d.radius, 0.0f, 0.5f * kPi);
+  lamp.sun_omc = one_minus_cos(half);
+  const float projected = kPi * sqr(std::sin(half));  // solid angle weighted by the cosine
+  lamp.radiance = half > 0 ? d.power / (d.normalize ? projected : 1.0f) : 0.0f;
+  lamp.intensity = half > 0 ? lamp.radiance * projected : d.power;
+  return true;
+}
+
+}  // namespace
+
+LampModel make_lamp(const opal_light_desc &desc) {
+  LampModel lamp;
+  Transform t;
+  std::memcpy(t.m, desc.transform, sizeof desc.transform);
+  lamp.type = desc.type;
+  lamp.visibility = desc.visibility;
+  lamp.cast_shadow = desc.cast_shadow != 0;
+  lamp.caustics = desc.caustics != 0;
+  lamp.receivers = desc.receivers;
+  lamp.position = t.origin();
+  lamp.axis = safe_normalize(-t.axis(2), {0, 0, -1});
+  lamp.colour = {desc.color[0], desc.color[1], desc.color[2]};
+  lamp.valid = lamp.is_area() ? describe_area(desc, t, lamp)
+               : lamp.type == OPAL_LIGHT_SUN ? describe_sun(desc, lamp) : describe_round(desc, t, lamp);
+  // The mean keeps saturated blue from counting for next to nothing.
+  const Vec3 c = lamp.colour;
+  lamp.brightness = 0.5f * std::abs(luminance(c)) + (std::abs(c.x) + std::abs(c.y) + std::abs(c.z)) / 6;
+  lamp.valid = lamp.valid && is_finite(lamp.position) && std::isfinite(lamp.radiance) && std::isfinite(lamp.intensity) &&
+               lamp.brightness > 0 && std::isfinite(lamp.brightness) && lamp.intensity != 0;
+  return lamp;
+}
+
+bool sample_lamp(const LampModel &lamp, const Vec3 &p, Vec2 u, LampSample &out) {
+  if (lamp.is_round()) return sample_round(lamp, p, u, out);
+  if (lamp.is_area()) return sample_area(lamp, p, u, out);
+  out.distance = kInfinity;
+  out.dirac = !(lamp.sun_omc > 0);
+  out.wi = out.dirac ? -lamp.axis : normalize(sample_cone(Frame::from_z(-lamp.axis), lamp.sun_omc, u));
+  out.value = out.dirac ? lamp.intensity : lamp.radiance;
+  out.pdf = out.dirac ? 1.0f : 1 / cone_solid_angle(lamp.sun_omc);
+  return true;
+}
+
+float lamp_pdf(const LampModel &lamp, const Vec3 &p, const Vec3 &wi, float distance) {
+  if (!lamp.has_size()) return 0;
+  if (lamp.is_round()) return pdf_round(lamp, p, wi, distance);
+  if (lamp.is_area()) return pdf_area(lamp, p, wi, distance);
+  return in_cone(wi, -lamp.axis, lamp.sun_omc) ? 1 / cone_solid_angle(lamp.sun_omc) : 0.0f;
+}
+
+bool hit_lamp(const LampModel &lamp, const Ray &ray, float t_after, float t_max, float &t, Vec3 &normal, float &radiance) {
+  if (!lamp.has_size()) return false;
+  if (lamp.is_round()) return hit_round(lamp, ray, t_after, t_max, t, normal, radiance);
+  if (lamp.is_area()) return hit_area(lamp, ray, t_after, t_max, t, normal, radiance);
+  return false;  // suns are met by rays that leave the scene
+}
+
+}  // namespace opal

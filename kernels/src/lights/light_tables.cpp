@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Building the tables; bounds of every kind of source for the light tree.
+#include "lights/light_tables.h"
+
+#include "lights/directions.h"
+#include "scene/scene.h"
+
+namespace opal {
+namespace {
+
+Bounds lamp_box(const LampModel &lamp) {
+  Bounds box;
+  if (lamp.is_round()) {
+    const Vec3 r{lamp.radius, lamp.radius, lamp.radius};
+    box.extend(lamp.position - r), box.extend(lamp.position + r);
+  } else {
+    for (int i = 0; i < 4; ++i)
+      box.extend(lamp.position + lamp.u * (i & 1 ? lamp.half_u : -lamp.half_u) + lamp.v * (i & 2 ? lamp.half_v : -lamp.half_v));
+  }
+  return box;
+}
+
+LightBounds bounds_of(const LampModel &lamp) {
+  LightBounds b;
+  b.box = lamp_box(lamp);
+  b.axis = lamp.axis;
+  b.power = std::abs(lamp.intensity) * lamp.brightness;
+  b.receivers = lamp.receivers;
+  if (lamp.type == OPAL_LIGHT_POINT) b.theta_o = kPi, b.theta_e = 0.5f * kPi;
+  else if (lamp.type == OPAL_LIGHT_SPOT) b.theta_e = std::acos(1 - std::min(lamp.cone_omc, 1.0f));
+  else b.theta_e = lamp.has_spread ? std::atan(lamp.tan_spread) : 0.5f * kPi;
+  // Who stands within a spherical spot sees it whatever the cone.
+  if (lamp.type == OPAL_LIGHT_SPOT && lamp.sphere) b.theta_o = 0;
+  return b;
+}
+
+LightBounds bounds_of(const EmissiveTriangle &t) {
+  LightBounds b;
+  b.box.extend(t.p0), b.box.extend(t.p1), b.box.extend(t.p2);
+  b.axis = safe_normalize(cross(t.p1 - t.p0, t.p2 - t.p0), {0, 0, 1});
+  b.theta_e = 0.5f * kPi;
+  b.two_sided = true;
+  b.power = 0.5f * (luminance(t.emission) + average(t.emission)) * t.area;
+  b.receivers = ~uint64_t(0);
+  return b;
+}
+
+// Scales a lamp's own spectrum to the luminance of its colour under D65.
+SpectralTable scaled_table(const Scene &scene, const SpectralTable &relative, const Vec3 &colour) {
+  double y = 0;
+  for (int i = 0; i < kTableSize; ++i)
+    y += double(relative[size_t(i)]) * luminance({scene.colour.rgb_response[0][size_t(i)], scene.colour.rgb_response[1][size_t(i)],
+                                                  scene.colour.rgb_response[2][size_t(i)]});
+  SpectralTable out;
+  const double scale = y > 0 ? luminance(colour) / y : 0;
+  for (int i = 0; i < kTableSize; ++i) out[size_t(i)] = float(relative[size_t(i)] * scale);
+  return out;
+}
+
+}  // namespace
+
+Vec3 triangle_emission(const Scene &scene, const EmissiveTriangle &triangle, const Vec3 &origin, const Vec3 &direction,
+                       float distance, float b1, float b2, float time) {
+  const Program &program = scene.materials[triangle.material].surface;
+  if (program.constant_emission) return program.emission;
+  const Hit hit{distance, b1, b2, triangle.instance, triangle.triangle};
+  ShadingPoint sp = scene.shading_point({origin, direction, 0, kInfinity, time}, hit);
+  return run_emission(scene, program, sp);
+}
+
+std::shared_ptr<LightTables> build_light_tables(const Scene &scene) {
+  auto tables = std::make_shared<LightTables>();
+  LightTables &t = *tables;
+  t.near_of_lamp.assign(scene.lamps.size(), kNoSource);
+  t.near_of_triangle.assign(scene.emissive.size(), kNoSource);
+  const auto add_near = [&](SourceId id, const LightBounds &bounds) {
+    t.near.push_back(id);
+    t.near_bounds.push_back(bounds);
+    return uint32_t(t.near.size() - 1);
+  };
+
+  for (uint32_t i = 0; i < scene.lamps.size(); ++i) {
+    const opal_light_desc &desc = scene.lamps[i].desc;
+    LampModel lamp = make_lamp(desc);
+    if (lamp.valid && desc.spectrum >= 0 && size_t(desc.spectrum) < scene.spectra.size()) {
+      lamp.table = int(t.lamp_tables.size());
+      t.lamp_tables.push_back(scaled_table(scene, scene.spectra[size_t(desc.spectrum)], lamp.colour));
+    }
+    t.lamps.push_back(lamp);
+    if (!lamp.valid) continue;
+    if (lamp.type == OPAL_LIGHT_SUN) {
+      t.far.push_back({SourceKind::Lamp, i});
+      continue;
+    }
+    if (lamp.has_size()) t.sized.push_back(i);
+    t.near_of_lamp[i] = add_near({SourceKind::Lamp, i}, bounds_of(lamp));
+  }
+  for (uint32_t i = 0; i < scene.emissive.size(); ++i)
+    t.near_of_triangle[i] = add_near({SourceKind::Triangle, i}, bounds_of(scene.emissive[i]));
+  t.world.build(scene);
+  if (t.world.present() && t.world.brightness() > 0) t.far.push_back({SourceKind::World, 0});
+
+  if (t.near.size() > kFewLights) {
+    t.tree.build(t.near_bounds);
+    t.near_bounds.clear();
+    t.near_bounds.shrink_to_fit();
+  }
+  t.to_casters.build(scene, t, scene.casters, true);
+  if (!scene.bounds.empty()) t.to_scene.build(scene, t, {{scene.bounds.centre(), scene.bounds.radius() * 1.001f + 1e-6f}}, false);
+  return tables;
+}
+
+}  // namespace opal

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which light matters at a point: a bound on what a group of lights can bring, and a binary tree of such bounds.
+//
+// Conty Estevez & Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting", in the stochastic form of
+// Pharr, Jakob & Humphreys (pbrt, 4th edition, section 12.6.3): from the root down, one of the two children is taken in
+// proportion to its bound, so the probability of a light is the product along its path.
+#pragma once
+
+#include "core/vec.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace opal {
+
+struct LightBounds {
+  Bounds box;
+  Vec3 axis{0, 0, 1};       // of the cone that holds every emitter's normal
+  float theta_o = 0;        // half angle of that cone
+  float theta_e = 0;        // how far beyond the normals light leaves
+  float power = 0;          // irradiance at distance 1 on a facing plane, summed
+  bool two_sided = false;
+  uint64_t receivers = 0;   // light linking: sets lit by any of them
+};
+LightBounds merge(const LightBounds &a, const LightBounds &b);
+
+// The receiver whose lights are weighed. normal: zero in media.
+struct Receiver {
+  Vec3 p, normal;
+  bool transmissive = false;
+  int32_t light_group = -1;
+};
+// The cosine at the receiver is never taken below this: shading normals lean, and nothing must be left out.
+inline constexpr float kSmallestCosine = 0.05f;
+
+// What the lights within the bounds may bring to the receiver, up to a common factor. 0 only if nothing reaches it.
+float importance(const LightBounds &bounds, const Receiver &receiver);
+
+class LightTree {
+ public:
+  void build(std::vector<LightBounds> lights);
+  bool empty() const { return nodes_.empty(); }
+  float root_importance(const Receiver &receiver) const;
+  // Light and its probability; false when none reaches the receiver.
+  bool sample(const Receiver &receiver, float u, uint32_t &light, float &probability) const;
+  float probability(const Receiver &receiver, uint32_t light) const;
+
+ private:
+  struct Node {
+    LightBounds bounds;
+    uint32_t parent = 0;
+    uint32_t right = 0;   // the left child follows its parent; 0: a leaf
+    uint32_t light = 0;
+  };
+  uint32_t build_node(std::vector<uint32_t> &order, size_t first, size_t last, uint32_t parent, int depth,
+                      const std::vector<LightBounds> &lights);
+
+  std::vector<Node> nodes_;
+  std::vector<uint32_t> leaf_of_;  // light -> node
+};
+
+}  // namespace opal

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// See world_light.h.
+#include "lights/world_light.h"
+
+#include "core/parallel.h"
+#include "lights/directions.h"
+#include "scene/scene.h"
+
+namespace opal {
+namespace {
+
+// What part of the samples goes everywhere alike, for what the map's resolution missed.
+constexpr float kFloor = 0.02f;
+
+// Index i with cdf[i] <= u < cdf[i + 1], of n intervals; `fraction` within it.
+int find_interval(const float *cdf, int n, float u, float &fraction) {
+  const int i = std::clamp(int(std::upper_bound(cdf, cdf + n + 1, u) - cdf) - 1, 0, n - 1);
+  const float width = cdf[i + 1] - cdf[i];
+  fraction = width > 0 ? clamp((u - cdf[i]) / width, 0.0f, 0x1.fffffep-1f) : 0.5f;
+  return i;
+}
+
+float importance(const Vec3 &rgb) {
+  const Vec3 c = max(rgb, Vec3{});
+  const float value = 0.5f * (luminance(c) + average(c));
+  return std::isfinite(value) ? value : 0.0f;
+}
+
+}  // namespace
+
+Vec3 world_radiance(const Scene &scene, const Vec3 &d, uint32_t ray_kind) {
+  const Program &program = scene.world.program;
+  if (program.constant_emission) return program.emission;
+  ShadingPoint sp;
+  sp.p = d;
+  sp.wo = -d;
+  sp.ng = sp.ns = -d;
+  sp.ray_kind = ray_kind;
+  sp.ray_length = kInfinity;
+  return run_emission(scene, program, sp);
+}
+
+Vec3 WorldLight::direction_of(float u, float v) {
+  const float azimuth = 2 * kPi * (0.5f - u), height = kPi * (v - 0.5f);
+  const float c = std::cos(height);
+  return {c * std::cos(azimuth), c * std::sin(azimuth), std::sin(height)};
+}
+
+Vec2 WorldLight::coordinates_of(const Vec3 &d) {
+  const float u = 0.5f - std::atan2(d.y, d.x) / (2 * kPi);
+  const float v = 0.5f + std::atan2(d.z, std::hypot(d.x, d.y)) * kInvPi;
+  return {saturate(u), saturate(v)};
+}
+
+void WorldLight::build(const Scene &scene) {
+  present_ = scene.world.present;
+  if (!present_) return;
+  const bool map = scene.world.map_width > 0 && !scene.world.program.constant_emission;
+  const int width = map ? std::max(4, scene.world.map_width) : 32, height = std::max(2, width / 2);
+  std::vector<float> values(size_t(width) * size_t(height));
+  const std::atomic<bool> never{false};
+  parallel_for(height, resolve_threads(scene.threads), never, [&](int64_t y) {
+    for (int x = 0; x < width; ++x)
+      values[size_t(y) * size_t(width) + size_t(x)] =
+          importance(world_radiance(scene, direction_of((float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height)), 0));
+  });
+  build_from_values(std::move(values), width, height);
+  if (!map) row_cdf_.clear(), cell_cdf_.clear(), density_.clear();
+}
+
+void WorldLight::build_from_values(std::vector<float> values, int width, int height) {
+  present_ = true;
+  width_ = width, height_ = height;
+  const auto at = [&](int x, int y) { return values[size_t(y) * size_t(width) + size_t((x + width) % width)]; };
+
+  // Interpolation spreads a texel over its neighbours, so the map does as well: half is a mean over 3 x 3 cells.
+  std::vector<double> smooth(values.size());
+  double total = 0, solid = 0;
+  for (int y = 0; y < height; ++y) {
+    const double c = std::cos(kPi * ((y + 0.5) / height - 0.5));
+    for (int x = 0; x < width; ++x) {
+      double sum = 0;
+      for (int j = std::max(0, y - 1); j <= std::min(height - 1, y + 1); ++j)
+        for (int i = x - 1; i <= x + 1; ++i) sum += at(i, j);
+      const int rows = std::min(height - 1, y + 1) - std::max(0, y - 1) + 1;
+      smooth[size_t(y) * size_t(width) + size_t(x)] = c * (0.5 * at(x, y) + 0.5 * sum / (3 * rows));
+      total += c * at(x, y), solid += c;
+    }
+  }
+  brightness_ = float(total / solid);
+  const double floor = brightness_ > 0 ? kFloor * brightness_ : 1.0;
+
+  row_cdf_.assign(size_t(height) + 1, 0);
+  cell_cdf_.assign(size_t(height) * size_t(width + 1), 0);
+  density_.assign(values.size(), 0);
+  std::vector<double> rows(size_t(height) + 1, 0);
+  for (int y = 0; y < height; ++y) {
+    const double c = std::cos(kPi * ((y + 0.5) / height - 0.5));
+    double sum = 0;
+    std::vector<double> running(size_t(width) + 1, 0);
+    for (int x = 0; x < width; ++x) {
+      double &cell = smooth[size_t(y) * size_t(width) + size_t(x)];
+      cell += floor * c;
+      running[size_t(x) + 1] = sum += cell;
+    }
+    for (int x = 0; x <= width; ++x) cell_cdf_[size_t(y) * size_t(width + 1) + size_t(x)] = float(running[size_t(x)] / sum);
+    rows[size_t(y) + 1] = rows[size_t(y)] + sum;
+  }
+  for (int y = 0; y <= height; ++y) row_cdf_[size_t(y)] = float(rows[size_t(y)] / rows[size_t(height)]);
+  // The density that sampling the rounded tables really has.
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const size_t i = size_t(y) * size_t(width + 1) + size_t(x);
+      density_[size_t(y) * size_t(width) + size_t(x)] =
+          (row_cdf_[size_t(y) + 1] - row_cdf_[size_t(y)]) * (cell_cdf_[i + 1] - cell_cdf_[i]) * float(width) * float(height);
+    }
+}
+
+Vec3 WorldLight::sample_map(Vec2 u, float &pdf) const {
+  float fx, fy;
+  const int y = find_interval(row_cdf_.data(), height_, u.y, fy);
+  const int x = find_interval(&cell_cdf_[size_t(y) * size_t(width_ + 1)], width_, u.x, fx);
+  const Vec3 d = direction_of((float(x) + fx) / float(width_), (float(y) + fy) / float(height_));
+  const float c = std::hypot(d.x, d.y);
+  pdf = c > 0 ? density_[size_t(y) * size_t(width_) + size_t(x)] / (2 * kPi * kPi * c) : 0.0f;
+  return d;
+}
+
+float WorldLight::map_pdf(const Vec3 &d) const {
+  const Vec2 uv = coordinates_of(d);
+  const int x = std::min(int(uv.x * float(width_)), width_ - 1), y = std::min(int(uv.y * float(height_)), height_ - 1);
+  const float c = std::hypot(d.x, d.y);
+  return c > 0 ? density_[size_t(y) * size_t(width_) + size_t(x)] / (2 * kPi * kPi * c) : 0.0f;
+}
+
+Vec3 WorldLight::sample(const Vec3 &normal, bool transmissive, Vec2 u, float &pdf) const {
+  if (has_map()) return sample_map(u, pdf);
+  if (length_squared(normal) == 0) {
+    pdf = 1 / kFourPi;
+    return sample_sphere(u);
+  }
+  const bool behind = transmissive && u.x >= 0.5f;
+  if (transmissive) u.x = behind ? reuse_above(u.x, 0.5f) : reuse_below(u.x, 0.5f);
+  const Frame frame = Frame::from_z(behind ? -normal : normal);
+  const Vec3 d = normalize(sample_cosine(frame, u));
+  pdf = std::max(dot(d, frame.z), 0.0f) * kInvPi * (transmissive ? 0.5f : 1.0f);
+  return d;
+}
+
+float WorldLight::pdf(const Vec3 &normal, bool transmissive, const Vec3 &d) const {
+  if (has_map()) return map_pdf(d);
+  if (length_squared(normal) == 0) return 1 / kFourPi;
+  const float c = dot(normal, d);
+  return transmissive ? std::abs(c) * kInvPi * 0.5f : std::max(c, 0.0f) * kInvPi;
+}
+
+}  // namespace opal
