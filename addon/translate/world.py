@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From Blender's world to the tracer's: a program for the radiance, and how finely it is sampled."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from opal_kernels.descriptions import Program, Ray, World
+
+SMALLEST_MAP, USUAL_MAP, LARGEST_MAP = 256, 1024, 2048  # pixels across
+
+
+def visibility(world: Any) -> Ray:
+    """The kinds of ray that see the world."""
+    seen = getattr(world, "cycles_visibility", None)
+    if seen is None:
+        return Ray.ALL
+    flags = (
+        (seen.camera, Ray.CAMERA),
+        (seen.diffuse, Ray.DIFFUSE),
+        (seen.glossy, Ray.GLOSSY),
+        (seen.transmission, Ray.TRANSMISSION),
+        (seen.scatter, Ray.SCATTER),
+    )
+    return Ray(sum((ray for on, ray in flags if on), int(Ray.SHADOW)))
+
+
+def nodes_of(tree: Any, seen: set[str] | None = None) -> Iterator[Any]:
+    """Every node of a tree and of the groups in it, each group once."""
+    seen = set() if seen is None else seen
+    for node in tree.nodes:
+        yield node
+        inner = getattr(node, "node_tree", None)
+        if inner is not None and inner.name_full not in seen:
+            seen.add(inner.name_full)
+            yield from nodes_of(inner, seen)
+
+
+def map_width(world: Any) -> int:
+    """Pixels across the importance map: of the finest picture in the world, as Cycles takes it, within limits."""
+    settings = getattr(world, "cycles", None)
+    if getattr(settings, "sampling_method", "AUTOMATIC") == "MANUAL":
+        return max(4, settings.sample_map_resolution)
+    if world.node_tree is None:
+        return 0
+    width = 0
+    for node in nodes_of(world.node_tree):
+        if node.type == "TEX_ENVIRONMENT" and node.image is not None:
+            width = max(width, node.image.size[0], SMALLEST_MAP)
+        elif node.type == "TEX_SKY":
+            width = max(
+                width, LARGEST_MAP if getattr(node, "sun_disc", False) else USUAL_MAP
+            )
+        elif node.type.startswith("TEX_") and node.type != "TEX_COORD":
+            width = max(width, USUAL_MAP)
+        elif node.type == "TEX_COORD":
+            width = max(width, SMALLEST_MAP)
+    return min(width, LARGEST_MAP) or SMALLEST_MAP
+
+
+def world_from_scene(world: Any, context: Any) -> tuple[World | None, list[Any]]:
+    """The world as the tracer takes it.
+
+    Parameters
+    ----------
+    world : bpy.types.World or None
+        Evaluated world.
+    context
+        Handed to the node readers.
+
+    Returns
+    -------
+    World or None
+        None is black.
+    list of Problem
+        What the node readers could not keep.
+    """
+    if world is None:
+        return None, []
+    from ..nodes import compile_world  # the node readers are only loaded for a render
+
+    compiled = compile_world(world, context)
+    program = Program(compiled.code, compiled.constants, compiled.n_registers)
+    return World(
+        program=program, visibility=int(visibility(world)), map_width=map_width(world)
+    ), list(compiled.problems)
