@@ -131,6 +131,7 @@ class CameraPath {
 
   void add_met(const SourceId &source, const Spectrum &radiance, const Vec3 &point, const Vec3 &normal, float distance) {
     if (radiance.is_zero()) return;
+    if (bounces_ > 0 && !lights_receiver(scene_, source, last_.light_group)) return;
     if (last_.event == EventClass::Sharp && rough_in_medium_) {
       // Photons are left on surfaces: what a medium scatters is the path's to find.
     } else if (bounces_ > 0 && brought(source)) {
@@ -272,9 +273,11 @@ class CameraPath {
     const SplitValue value = evaluate(surface_, sample.wi, w_, Transport::Radiance);
     const bool keep_rough = !brought_by_photons(scene_, settings_.photons_carry, EventClass::Rough, rough_events_ > 0, sample.source);
     const bool keep_sharp = rough_in_medium_ || !brought_by_photons(scene_, settings_.photons_carry, EventClass::Sharp, rough_events_ > 0, sample.source);
+    // Lamps hidden from a kind of ray do not light the lobes that send such rays.
+    const bool behind = dot(sample.wi, sp.ng) < 0;
     Spectrum f(0.0f);
-    if (keep_rough) f += value.rough;
-    if (keep_sharp) f += value.sharp;
+    if (keep_rough && sample.visibility & (behind ? OPAL_RAY_TRANSMISSION : OPAL_RAY_DIFFUSE)) f += value.rough;
+    if (keep_sharp && sample.visibility & (behind ? OPAL_RAY_TRANSMISSION : OPAL_RAY_GLOSSY)) f += value.sharp;
     if (f.is_zero()) return;
     Spectrum contribution = throughput_ * f * sample.radiance;
     if (contribution.is_zero() || !contribution.is_finite()) return;
@@ -407,6 +410,7 @@ class CameraPath {
                       sampler_.get2d(dimension + kDimMediumLight), w_, ray_.time, sample) ||
         !(sample.pdf > 0))
       return;
+    if (!(sample.visibility & OPAL_RAY_SCATTER)) return;
     const Spectrum phase = here.phase_value(w_, dot(ray_.direction, sample.wi));
     const Spectrum through = transmittance_over(here.extinction, t);
     Spectrum contribution = throughput_ * through * here.scattering * phase * sample.radiance;

@@ -179,6 +179,10 @@ float light_pdf(const Scene &scene, const SourceId &source, const Vec3 &p, const
   return pdf > 0 ? pdf * source_probability(t, {p, normal, transmissive, light_group}, source) : 0.0f;
 }
 
+bool lights_receiver(const Scene &scene, const SourceId &source, int32_t light_group) {
+  return source.kind != SourceKind::Lamp || lights_group(scene.lamps[source.index].desc.receivers, light_group);
+}
+
 bool intersect_lamps(const Scene &scene, const Ray &ray, float t_after, float t_max, uint32_t ray_kind, const Wavelengths &w,
                      LampHit &out) {
   if (!scene.lights) return false;

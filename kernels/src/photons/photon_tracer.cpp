@@ -32,7 +32,7 @@ class PhotonPath {
     static const std::vector<EmissionTarget> kEverywhere;
     const bool aimed = settings_.photons_carry == OPAL_CARRY_CAUSTICS;
     const float time = settings_.motion_blur ? sampler_.get1d(kDimTime) : 0.0f;
-    EmissionSample sample;
+    EmissionSample &sample = emitted_;
     if (!sample_emission(scene_, aimed ? scene_.casters : kEverywhere, sampler_.get2d(kDimEmissionLight),
                          sampler_.get2d(kDimEmissionPosition), sampler_.get2d(kDimEmissionDirection), time, w_, sample))
       return false;
@@ -72,6 +72,7 @@ class PhotonPath {
       go_on(ray_.direction);
       return true;
     }
+    if (sharp_events_ + rough_events_ == 0 && !emission_reaches(emitted_, surface_.sp.p)) return false;
     if (surface_.has_smooth_lobe && photon_is_left(settings_.photons_carry, sharp_events_, rough_events_)) leave();
     if (!surface_.caster && !photon_goes_on(settings_.photons_carry) && !has_transparent_lobe()) return false;
 
@@ -207,6 +208,7 @@ class PhotonPath {
   const Wavelengths &w_;
   PhotonChunk &out_;
 
+  EmissionSample emitted_;
   Ray ray_;
   uint32_t ray_kind_ = OPAL_RAY_DIFFUSE;
   InteriorStack interior_;
