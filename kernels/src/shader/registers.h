@@ -9,7 +9,7 @@
 namespace opal {
 
 struct alignas(16) Float4 {
-  float x = 0, y = 0, z = 0, w = 0;
+  float x, y, z, w;  // uninitialised unless asked for: a register file is large
 
   constexpr Vec3 xyz() const { return {x, y, z}; }
   constexpr float operator[](int i) const { return i == 0 ? x : i == 1 ? y : i == 2 ? z : w; }

@@ -12,13 +12,19 @@ namespace opal {
 
 struct Scene;
 
-// A program as kept by the scene.
+// A program as kept by the scene: the whole of it, and the parts of it that answer smaller questions, cut out by
+// following registers backwards from the operations that matter.
 struct Program {
-  std::vector<opal_instruction> code;
+  using Code = std::vector<opal_instruction>;
+
+  Code code;
+  Code emission_code;       // what the emission needs; empty: none is emitted
+  Code transparency_code;   // what the straight-through transmittance needs; empty: opaque
+  std::vector<Code> heights; // of the Bump operations, by number (their last input)
   std::vector<float> constants;  // 4 floats a register
   int n_constants = 0, n_registers = 0;
-  bool constant_emission = false;  // emission is the same everywhere
-  Vec3 emission;                   // that value, or an estimate
+  bool constant_emission = true;  // emission is the same everywhere
+  Vec3 emission;                  // that value, or an estimate
 };
 
 // Copies and checks a program: operations known, registers in range, images existing. On failure `error` says which

@@ -17,7 +17,7 @@ struct Voronoi {
 struct VoronoiSample {
   float distance = 0;
   Vec3 color;
-  Float4 position;
+  Float4 position{};
   float radius = 0;
 };
 // `p` and `w` are the node's coordinates, `scale` its Scale socket.
