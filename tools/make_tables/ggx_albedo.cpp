@@ -37,13 +37,16 @@ float reflected(const Node &n, const Vec3 &m) {
   const float lambda_o = n.ggx.lambda(n.wo);
   return (1 + lambda_o) / (1 + lambda_o + n.ggx.lambda(wi));
 }
-float glass(const Node &n, const Vec3 &m, float eta) {
+// `any_side` counts light that is refracted out of the wrong side too. No lobe lets it through, but Cycles' table for the
+// dense side was made so, and rough Glass nodes shall look alike; gems use the other.
+float glass(const Node &n, const Vec3 &m, float eta, bool any_side) {
+  if (std::abs(eta - 1) < 1e-4f) return 1;  // taken as no boundary (microfacet.h)
   const float cos_o = dot(n.wo, m);
   float cos_t;
   const float f = fresnel_dielectric(cos_o, eta, cos_t);
   float sum = f * reflected(n, m);
   const Vec3 wi = refract(n.wo, m, eta, cos_t);
-  if (f < 1 && wi.z < 0) {
+  if (f < 1 && (any_side || wi.z < 0)) {
     const float lambda_o = n.ggx.lambda(n.wo);
     sum += (1 - f) * (1 + lambda_o) / (1 + lambda_o + n.ggx.lambda(wi));
   }
@@ -95,7 +98,7 @@ int main() {
     for (int z = 0; z < 16; ++z) {
       const float index = index_from_f0(sqr(sqr(node_value(z, 16, 0.99f))));
       const float eta = inside ? 1 / index : index;
-      const auto value = [eta](const Node &n, const Vec3 &m) { return glass(n, m, eta); };
+      const auto value = [eta, inside](const Node &n, const Vec3 &m) { return glass(n, m, eta, inside); };
       for (int y = 0; y < 16; ++y)
         for (int x = 0; x < 16; ++x) e.push_back(average_over_facets(node_value(x, 16), node_value(y, 16), kSamples, value));
       for (int x = 0; x < 16; ++x) average.push_back(average_over_cosines(node_value(x, 16), kSamples / 8, value));
@@ -105,6 +108,15 @@ int main() {
                  : "Reflection and transmission of a dielectric from the thin side, [z][cos][roughness]");
     print(inside ? "kGgxGlassInsideEavg" : "kGgxGlassEavg", average, "The same averaged over 2 cos d(cos), [z][roughness]");
   }
+
+  table.clear();
+  for (int z = 0; z < 16; ++z) {
+    const float eta = 1 / index_from_f0(sqr(sqr(node_value(z, 16, 0.99f))));
+    const auto value = [eta](const Node &n, const Vec3 &m) { return glass(n, m, eta, false); };
+    for (int y = 0; y < 16; ++y)
+      for (int x = 0; x < 16; ++x) table.push_back(average_over_facets(node_value(x, 16), node_value(y, 16), kSamples, value));
+  }
+  print("kGgxGemInsideE", table, "The dense side again, without light refracted out of the wrong side");
 
   table.clear();
   for (int z = 0; z < 16; ++z) {

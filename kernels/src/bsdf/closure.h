@@ -15,12 +15,12 @@ namespace opal {
 
 enum class LobeKind : uint8_t {
   Diffuse,        // Lambert
-  OrenNayar,      // params: A, B
+  OrenNayar,      // params: A, B; f0: the part that is scattered several times
   Translucent,    // Lambert through the surface
   Microfacet,     // GGX reflection
   Glass,          // GGX reflection and transmission, sampled together
   Refraction,     // GGX transmission alone
-  Sheen,
+  Sheen,          // params: a, b of the linearly transformed cosine
   Transparent,    // straight through
   Gem             // spectral dielectric boundary
 };
@@ -30,7 +30,8 @@ enum class FresnelKind : uint8_t {
   None,           // the weight alone
   Dielectric,     // exact, from eta
   Generalized,    // f0, f90 in RGB, Schlick-shaped by the exact dielectric curve of eta or an exponent
-  F82             // metal: f0 and the tint at 82 degrees
+  F82,            // metal: Schlick from f0, less f90 cos (1 - cos)^6 (the dip near 82 degrees)
+  Conductor       // metal: complex index n = f0, k = f90, in RGB
 };
 
 struct Lobe {

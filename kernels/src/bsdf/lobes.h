@@ -4,13 +4,14 @@
 // Conventions shared by all of them:
 // - `weight` is what reaches the node through Mix and Add Shader nodes; the node's own colour is a separate argument.
 //   Both are linear Rec.709. Nothing is added where their product is (near) zero.
-// - `normal` is the Normal socket: any length, any side; a zero vector means sp.ns. It is turned to the viewer's side
-//   and, for reflecting lobes, bent until the mirror direction stays above the surface, as Cycles does.
+// - `normal` is the Normal socket: any length, in world space, towards the viewer's side as sp.ns is; a zero vector
+//   means sp.ns. For lobes with a mirror direction it is bent until that stays above the surface, as Cycles does.
 // - `roughness` is the socket (alpha = roughness^2); `ior` is the socket, i.e. that of the inside against the outside;
 //   the back of a face sees its reciprocal.
 // - `tangent` is the Tangent socket (a zero vector: any); `rotation` the Rotation socket, 1 a full turn.
 // - `multiscatter` is the distribution "Multiscatter GGX": energy that leaves after several bounces between facets is
 //   put back. "Beckmann" and "Ashikhmin-Shirley" are shaded as GGX.
+// - Each function also adds its estimate of what it reflects and transmits to set.albedo.
 #pragma once
 
 #include "bsdf/closure.h"
@@ -67,7 +68,7 @@ struct PrincipledInputs {
   float coat_roughness = 0.03f;
   float coat_ior = 1.5f;
   Vec3 coat_tint{1, 1, 1};
-  Vec3 coat_normal;                 // zero: sp.ns
+  Vec3 coat_normal;                 // zero: as normal
   float sheen_weight = 0;
   float sheen_roughness = 0.5f;
   Vec3 sheen_tint{1, 1, 1};

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The gem boundary: a dielectric whose index is a spectrum, polished or ground (GGX).
+//
+// One direction serves all wavelengths where it can: a reflection at a facet is the same for every colour, and only the
+// share F(lambda) differs. A refracted direction belongs to the hero wavelength alone when the index disperses; on a ground
+// boundary the other wavelengths could have gone there through other facets, and their pdf says how likely.
+// Radiance crossing the boundary scales with (n(here)/n(there))^2 at each wavelength, flux does not (Veach 1997, 5.2).
+// Set: one lobe of kind Gem (its normal is used), set.gem filled.
+#pragma once
+
+#include "bsdf/closure.h"
+
+namespace opal {
+
+bool sample_gem(const ClosureSet &set, const ShadingPoint &sp, Transport transport, float choice, Vec2 u, BsdfSample &out);
+// f |cos wi| of a ground boundary, 0 of a polished one.
+Spectrum eval_gem(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, Transport transport, Spectrum &pdf);
+
+}  // namespace opal
