@@ -71,6 +71,35 @@ class Polyhedron:
             worst = max(worst, float(np.abs((corners - corners.mean(axis=0)) @ (vector / np.linalg.norm(vector))).max()))
         return worst
 
+    def contracted(self, length: float) -> Polyhedron:
+        """The same with edges shorter than this drawn together to a point; faces that this leaves without area vanish.
+
+        If the surface would not stay closed, nothing is changed.
+        """
+        group = np.arange(len(self.vertices))
+
+        def root(corner: int) -> int:
+            while group[corner] != corner:
+                corner = group[corner]
+            return int(corner)
+
+        for a, b in sorted(self.edges()):
+            if np.linalg.norm(self.vertices[a] - self.vertices[b]) < length:
+                group[root(b)] = root(a)
+        roots = [root(corner) for corner in range(len(self.vertices))]
+        kept = sorted(set(roots))
+        number = {corner: i for i, corner in enumerate(kept)}
+        members = [[c for c, r in enumerate(roots) if r == corner] for corner in kept]
+        faces, planes = [], []
+        for face, plane in zip(self.faces, self.planes, strict=True):
+            loop = [number[roots[corner]] for corner in face]
+            loop = [corner for i, corner in enumerate(loop) if corner != loop[i - 1]]
+            if len(loop) > 2:
+                faces.append(tuple(loop))
+                planes.append(plane)
+        result = Polyhedron(np.array([self.vertices[m].mean(axis=0) for m in members]), tuple(faces), tuple(planes))
+        return result if result.is_watertight() and result.euler_characteristic() == 2 else self
+
 
 def intersect_half_spaces(normals: np.ndarray, distances: np.ndarray, tolerance: float = 1e-9) -> Polyhedron:
     """Intersect half-spaces into one bounded convex polyhedron.
