@@ -76,6 +76,7 @@ std::shared_ptr<LightTables> build_light_tables(const Scene &scene) {
   const auto add_near = [&](SourceId id, const LightBounds &bounds) {
     t.near.push_back(id);
     t.near_bounds.push_back(bounds);
+    t.near_bounds.back().finish();
     return uint32_t(t.near.size() - 1);
   };
 

@@ -70,6 +70,12 @@ LightBounds merge(const LightBounds &a, const LightBounds &b) {
   return m;
 }
 
+void LightBounds::finish() {
+  sin_o = std::sin(theta_o), cos_o = std::cos(theta_o);
+  // A hair of tolerance: at the very edge rounding must not leave out what sampling can still find.
+  cos_e = std::cos(std::min(theta_e + 1e-3f, kPi));
+}
+
 float importance(const LightBounds &b, const Receiver &r) {
   if (r.light_group >= 0 && !(b.receivers >> (r.light_group & 63) & 1)) return 0;
   const Vec3 centre = b.box.centre();
@@ -85,12 +91,11 @@ float importance(const LightBounds &b, const Receiver &r) {
   float cos_w = -dot(w, b.axis);
   if (b.two_sided) cos_w = std::abs(cos_w);
   const float sin_w = safe_sqrt(1 - sqr(cos_w));
-  const float sin_o = std::sin(b.theta_o), cos_o = std::cos(b.theta_o);
-  const float cos_x = cos_of_difference(sin_w, cos_w, sin_o, cos_o), sin_x = sin_of_difference(sin_w, cos_w, sin_o, cos_o);
+  const float cos_x = cos_of_difference(sin_w, cos_w, b.sin_o, b.cos_o);
+  const float sin_x = sin_of_difference(sin_w, cos_w, b.sin_o, b.cos_o);
   const float cos_leaving = within ? 1.0f : cos_of_difference(sin_x, cos_x, sin_u, cos_u);
-  // A hair of tolerance: at the very edge rounding must not leave out what sampling can still find.
-  if (cos_leaving < std::cos(std::min(b.theta_e + 1e-3f, kPi))) return 0;
-  float value = b.power * std::max(cos_leaving, b.theta_e > 0.5f * kPi ? 1.0f : 1e-3f) / nearest2;
+  if (cos_leaving < b.cos_e) return 0;
+  float value = b.power * std::max(cos_leaving, 1e-3f) / nearest2;
 
   // At the receiver.
   if (length_squared(r.normal) > 0 && !within) {
@@ -106,6 +111,7 @@ void LightTree::build(std::vector<LightBounds> lights) {
   leaf_of_.assign(lights.size(), 0);
   if (lights.empty()) return;
   nodes_.reserve(2 * lights.size());
+  for (LightBounds &b : lights) b.finish();
   std::vector<uint32_t> order(lights.size());
   for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
   build_node(order, 0, order.size(), 0, 0, lights);
@@ -163,17 +169,43 @@ uint32_t LightTree::build_node(std::vector<uint32_t> &order, size_t first, size_
   const uint32_t right = build_node(order, middle, last, me, depth + 1, lights);
   nodes_[me].right = right;
   nodes_[me].bounds = merge(nodes_[left].bounds, nodes_[right].bounds);
+  nodes_[me].bounds.finish();
   return me;
 }
 
-float LightTree::root_importance(const Receiver &receiver) const {
-  return nodes_.empty() ? 0.0f : importance(nodes_[0].bounds, receiver);
+void LightTree::cut(const Receiver &receiver, Cut &out) const {
+  out.count = 0, out.total = 0;
+  if (nodes_.empty()) return;
+  // How much a split may tell: the group's weight times the solid angle it fills, roughly.
+  float gain[kCutSize];
+  const auto place = [&](int i, uint32_t node) {
+    const LightBounds &b = nodes_[node].bounds;
+    out.nodes[i] = node;
+    out.importance[i] = importance(b, receiver);
+    const float r2 = sqr(b.box.radius()), d2 = length_squared(b.box.centre() - receiver.p);
+    gain[i] = nodes_[node].right && r2 > 0.02f * d2 ? out.importance[i] * std::min(r2 / std::max(d2, 1e-20f), 1.0f) : 0.0f;
+  };
+  place(0, 0);
+  out.count = 1;
+  while (out.count < kCutSize) {
+    const int i = int(std::max_element(gain, gain + out.count) - gain);
+    if (!(gain[i] > 0)) break;
+    const uint32_t node = out.nodes[i];
+    place(i, node + 1);
+    place(out.count++, nodes_[node].right);
+  }
+  for (int i = 0; i < out.count; ++i) out.total += out.importance[i];
 }
 
-bool LightTree::sample(const Receiver &receiver, float u, uint32_t &light, float &probability) const {
-  if (nodes_.empty()) return false;
-  uint32_t node = 0;
-  probability = 1;
+bool LightTree::sample(const Cut &cut, const Receiver &receiver, float u, uint32_t &light, float &probability) const {
+  if (!(cut.total > 0)) return false;
+  float x = u * cut.total;
+  int first = 0;
+  while (first + 1 < cut.count && x >= cut.importance[first]) x -= cut.importance[first++];
+  if (!(cut.importance[first] > 0)) return false;
+  uint32_t node = cut.nodes[first];
+  probability = cut.importance[first] / cut.total;
+  u = clamp(x / cut.importance[first], 0.0f, 0x1.fffffep-1f);
   while (nodes_[node].right) {
     const uint32_t left = node + 1, right = nodes_[node].right;
     const float a = importance(nodes_[left].bounds, receiver), b = importance(nodes_[right].bounds, receiver);
@@ -186,17 +218,19 @@ bool LightTree::sample(const Receiver &receiver, float u, uint32_t &light, float
   return probability > 0;
 }
 
-float LightTree::probability(const Receiver &receiver, uint32_t light) const {
-  if (light >= leaf_of_.size()) return 0;
+float LightTree::probability(const Cut &cut, const Receiver &receiver, uint32_t light) const {
+  if (light >= leaf_of_.size() || !(cut.total > 0)) return 0;
   float probability = 1;
-  for (uint32_t node = leaf_of_[light]; node != 0; node = nodes_[node].parent) {
+  for (uint32_t node = leaf_of_[light];; node = nodes_[node].parent) {
+    for (int i = 0; i < cut.count; ++i)
+      if (cut.nodes[i] == node) return probability * cut.importance[i] / cut.total;
+    if (node == 0) return 0;
     const uint32_t parent = nodes_[node].parent, left = parent + 1, right = nodes_[parent].right;
     const float a = importance(nodes_[left].bounds, receiver), b = importance(nodes_[right].bounds, receiver);
     if (!(a + b > 0)) return 0;
     const float p = a / (a + b);
     probability *= node == left ? p : 1 - p;
   }
-  return probability;
 }
 
 }  // namespace opal

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which light matters at a point: a bound on what a group of lights can bring, and a binary tree of such bounds.
 //
-// Conty Estevez & Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting", in the stochastic form of
-// Pharr, Jakob & Humphreys (pbrt, 4th edition, section 12.6.3): from the root down, one of the two children is taken in
-// proportion to its bound, so the probability of a light is the product along its path.
+// Conty Estevez & Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting". Near the receiver a group's
+// bound says little, so groups that look large from it are split first, into at most kCutSize; one of these is taken in
+// proportion to its bound, and from there down one child at a time (Pharr, Jakob & Humphreys, pbrt, 4th edition, section
+// 12.6.3). The split depends on the receiver alone, so the probability of a light is the product along its path.
 #pragma once
 
 #include "core/vec.h"
@@ -21,6 +22,9 @@ struct LightBounds {
   float power = 0;          // irradiance at distance 1 on a facing plane, summed
   bool two_sided = false;
   uint64_t receivers = 0;   // light linking: sets lit by any of them
+  float sin_o = 0, cos_o = 1, cos_e = 1;  // of the angles above, by finish()
+
+  void finish();
 };
 LightBounds merge(const LightBounds &a, const LightBounds &b);
 
@@ -36,14 +40,24 @@ inline constexpr float kSmallestCosine = 0.05f;
 // What the lights within the bounds may bring to the receiver, up to a common factor. 0 only if nothing reaches it.
 float importance(const LightBounds &bounds, const Receiver &receiver);
 
+inline constexpr int kCutSize = 16;
+
 class LightTree {
  public:
   void build(std::vector<LightBounds> lights);
   bool empty() const { return nodes_.empty(); }
-  float root_importance(const Receiver &receiver) const;
+
+  // The groups among which a receiver chooses first.
+  struct Cut {
+    uint32_t nodes[kCutSize];
+    float importance[kCutSize];
+    int count = 0;
+    float total = 0;
+  };
+  void cut(const Receiver &receiver, Cut &out) const;
   // Light and its probability; false when none reaches the receiver.
-  bool sample(const Receiver &receiver, float u, uint32_t &light, float &probability) const;
-  float probability(const Receiver &receiver, uint32_t light) const;
+  bool sample(const Cut &cut, const Receiver &receiver, float u, uint32_t &light, float &probability) const;
+  float probability(const Cut &cut, const Receiver &receiver, uint32_t light) const;
 
  private:
   struct Node {

@@ -29,6 +29,7 @@ struct Weights {
   size_t count = 0;
   float total = 0;
   bool tree = false;  // the last value is the tree's
+  LightTree::Cut cut;
 
   Weights(const LightTables &t, const Receiver &r) {
     // More than a handful of suns: the rest share the last place and are found by a second choice.
@@ -39,9 +40,12 @@ struct Weights {
       total += v;
     }
     tree = !t.tree.empty();
-    if (tree) total += values[count++] = t.tree.root_importance(r);
-    else
+    if (tree) {
+      t.tree.cut(r, cut);
+      total += values[count++] = cut.total;
+    } else {
       for (const LightBounds &b : t.near_bounds) total += values[count++] = importance(b, r);
+    }
   }
 };
 
@@ -81,7 +85,7 @@ bool choose_source(const LightTables &t, const Receiver &r, float u, SourceId &i
   }
   uint32_t light = 0;
   float inner = 0;
-  if (!t.tree.sample(r, rest, light, inner)) return false;
+  if (!t.tree.sample(w.cut, r, rest, light, inner)) return false;
   id = t.near[light];
   probability *= inner;
   return probability > 0;
@@ -100,7 +104,7 @@ float source_probability(const LightTables &t, const Receiver &r, const SourceId
   const uint32_t near = id.index < index.size() ? index[id.index] : kNoSource;
   if (near == kNoSource) return 0;
   if (!w.tree) return w.values[far_slots(t) + near] / w.total;
-  return w.values[w.count - 1] / w.total * t.tree.probability(r, near);
+  return w.values[w.count - 1] / w.total * t.tree.probability(w.cut, r, near);
 }
 
 bool sample_triangle_light(const Scene &scene, uint32_t index, const Vec3 &p, Vec2 u, const Wavelengths &w, float time,
