@@ -40,6 +40,7 @@ class Sampler {
 
   // Two well-stratified numbers in [0,1). Even dimensions only; a pair never straddles a group of four.
   Vec2 get2d(uint32_t dimension) const {
+    if (dimension >= kLastSobolDimension) return {independent(dimension), independent(dimension + 1)};
     const uint32_t group = dimension >> 2, component = dimension & 3u;
     const uint32_t group_key = hash32(key_, group);
     const uint32_t shuffled = owen_scramble_reversed(reverse_bits(index_), group_key);  // reversed order
@@ -47,6 +48,7 @@ class Sampler {
     return {to_float(scrambled(i, component, group_key)), to_float(scrambled(i, component + 1, group_key))};
   }
   float get1d(uint32_t dimension) const {
+    if (dimension >= kLastSobolDimension) return independent(dimension);
     const uint32_t group = dimension >> 2, component = dimension & 3u;
     const uint32_t group_key = hash32(key_, group);
     const uint32_t i = reverse_bits(owen_scramble_reversed(reverse_bits(index_), group_key));
@@ -55,7 +57,11 @@ class Sampler {
   constexpr uint32_t key() const { return key_; }
   constexpr uint32_t index() const { return index_; }
 
+  // From here on plain hashed numbers: after many events stratification is lost anyway, and they are cheaper.
+  static constexpr uint32_t kLastSobolDimension = 136;
+
  private:
+  float independent(uint32_t dimension) const { return to_float(hash32(hash32(key_, dimension), index_)); }
   static uint32_t scrambled(uint32_t index, uint32_t component, uint32_t group_key);
   static float to_float(uint32_t x) { return float(x >> 8) * 0x1p-24f; }
 

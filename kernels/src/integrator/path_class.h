@@ -41,6 +41,12 @@ inline bool photon_is_left(int carry, int sharp_events, int rough_events) {
   }
 }
 
+// The film's pass that takes what a photon with this history brings, seen at first hand.
+inline int32_t photon_pass(int sharp_events, int rough_events) {
+  if (rough_events > 0) return OPAL_PASS_INDIRECT;
+  return sharp_events > 0 ? OPAL_PASS_CAUSTICS : OPAL_PASS_DIRECT;
+}
+
 // Whether photons go on after a rough event.
 inline bool photon_goes_on(int carry) { return carry == OPAL_CARRY_INDIRECT || carry == OPAL_CARRY_ALL; }
 

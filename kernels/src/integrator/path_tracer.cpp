@@ -434,7 +434,7 @@ class CameraPath {
   void gather() {
     const Spectrum flux = gather_photons(pass_.photons, surface_, w_, index_, settings_.gather);
     if (flux.is_zero()) return;
-    add_bounced(throughput_ * flux / path_pdf_.average(), true);
+    add_bounced(throughput_ * flux / path_pdf_.average(), settings_.photons_carry == OPAL_CARRY_CAUSTICS);
   }
 
   // ---- Bookkeeping ----

@@ -60,7 +60,7 @@ float Render::radius_of(int pass) const {
   return float(std::sqrt(area));
 }
 
-bool Render::trace_photons_of(PassContext &pass, PassBuffer &buffer, std::vector<Vec3> &splats) {
+bool Render::trace_photons_of(PassContext &pass, PassBuffer &buffer, SplatSums &splats) {
   const auto start = std::chrono::steady_clock::now();
   const uint32_t n = uint32_t(settings_.photons_per_pass);
   const int64_t n_chunks = (int64_t(n) + kPhotonChunk - 1) / kPhotonChunk;
@@ -81,9 +81,13 @@ bool Render::trace_photons_of(PassContext &pass, PassBuffer &buffer, std::vector
   std::vector<Photon> photons;
   photons.reserve(total);
   int64_t rays = 0;
+  splats.direct.resize(size_t(width()) * size_t(height()));
+  splats.indirect = splats.caustics = splats.direct;
   for (PhotonChunk &chunk : chunks) {  // in order: the sums do not depend on who traced what
     photons.insert(photons.end(), chunk.photons.begin(), chunk.photons.end());
-    for (const Splat &splat : chunk.splats) splats[splat.pixel] += splat.rgb;
+    for (const Splat &splat : chunk.splats)
+      (splat.pass == OPAL_PASS_CAUSTICS ? splats.caustics : splat.pass == OPAL_PASS_DIRECT ? splats.direct : splats.indirect)
+          [splat.pixel] += splat.rgb;
     for (const auto &[slot, value] : chunk.spectral)
       if (buffer.has(OPAL_PASS_SPECTRAL)) buffer.values[OPAL_PASS_SPECTRAL][slot] += value;
     rays += chunk.rays;
@@ -98,7 +102,7 @@ bool Render::trace_photons_of(PassContext &pass, PassBuffer &buffer, std::vector
   return true;
 }
 
-bool Render::trace_camera_of(const PassContext &pass, PassBuffer &buffer, const std::vector<Vec3> &splats) {
+bool Render::trace_camera_of(const PassContext &pass, PassBuffer &buffer, const SplatSums &splats) {
   const auto start = std::chrono::steady_clock::now();
   const int w = width(), h = height();
   const int tiles_x = (w + kTile - 1) / kTile, tiles_y = (h + kTile - 1) / kTile;
@@ -128,8 +132,12 @@ bool Render::trace_camera_of(const PassContext &pass, PassBuffer &buffer, const 
         }
     }
     const float light_scale = scale * exposure;
-    caustics = caustics * light_scale + splats[pixel] * exposure;
-    emission *= light_scale, direct *= light_scale, indirect *= light_scale, medium *= light_scale;
+    emission *= light_scale, direct *= light_scale, indirect *= light_scale, caustics *= light_scale, medium *= light_scale;
+    if (!splats.caustics.empty()) {
+      direct += splats.direct[pixel] * exposure;
+      indirect += splats.indirect[pixel] * exposure;
+      caustics += splats.caustics[pixel] * exposure;
+    }
     float *combined = buffer.at(OPAL_PASS_COMBINED, pixel);
     put(combined, emission + direct + indirect + caustics + medium);
     combined[3] = alpha * scale;
@@ -166,7 +174,7 @@ bool Render::render_pass(int number) {
   progress_ = 0;
   PassBuffer buffer;
   buffer.allocate(width(), height(), settings_.passes, settings_.spectral_bins);
-  std::vector<Vec3> splats(size_t(width()) * size_t(height()));
+  SplatSums splats;
   PassContext pass(scene_, settings_, filter_, number);
   if (wants_photons() && !trace_photons_of(pass, buffer, splats)) return false;
   if (!trace_camera_of(pass, buffer, splats)) return false;

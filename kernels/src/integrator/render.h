@@ -9,6 +9,11 @@
 
 namespace opal {
 
+// What photons splat in a pass, by kind of light; empty without photons.
+struct SplatSums {
+  std::vector<Vec3> direct, indirect, caustics;
+};
+
 class Render {
  public:
   Render(const Scene &scene, const opal_render_settings &settings);
@@ -22,8 +27,8 @@ class Render {
   opal_render_statistics statistics() const;
 
  private:
-  bool trace_photons_of(PassContext &pass, PassBuffer &buffer, std::vector<Vec3> &splats);
-  bool trace_camera_of(const PassContext &pass, PassBuffer &buffer, const std::vector<Vec3> &splats);
+  bool trace_photons_of(PassContext &pass, PassBuffer &buffer, SplatSums &splats);
+  bool trace_camera_of(const PassContext &pass, PassBuffer &buffer, const SplatSums &splats);
   float radius_of(int pass) const;
   bool wants_photons() const;
   int width() const { return settings_.region[2] - settings_.region[0]; }

@@ -191,7 +191,7 @@ class PhotonPath {
     if (through.blocked()) return;
     radiance *= uplift(through.surfaces, w_) * through.medium;
     const uint32_t pixel = (uint32_t(y) - uint32_t(region[1])) * uint32_t(region[2] - region[0]) + (uint32_t(x) - uint32_t(region[0]));
-    out_.splats.push_back({pixel, to_rgb(radiance, w_)});
+    out_.splats.push_back({pixel, photon_pass(sharp_events_, rough_events_), to_rgb(radiance, w_)});
     if (settings_.spectral_bins > 0)
       for (int k = 0; k < kWavelengths; ++k) {
         if (radiance[k] == 0) continue;

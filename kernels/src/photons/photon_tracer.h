@@ -7,9 +7,10 @@
 
 namespace opal {
 
-// A photon's direct effect on the film. `pixel` counts within the region.
+// A photon's direct effect on the film. `pixel` counts within the region; `pass` is the OPAL_PASS_* of its kind of light.
 struct Splat {
   uint32_t pixel;
+  int32_t pass;
   Vec3 rgb;
 };
 
