@@ -98,7 +98,7 @@ void preserve_energy(Lobe &lobe, const Vec3 &wo, const Vec3 &average_fresnel) {
   // Further bounces meet the Fresnel term again: their share is a geometric series with ratio F (1 - E_avg).
   Vec3 darkening;
   for (int c = 0; c < 3; ++c) {
-    const float f = average_fresnel[c];
+    const float f = saturate(average_fresnel[c]);  // colours above 1 are let through, not multiplied up
     const float several = f * e.average / (1 - f * (1 - e.average));
     darkening[c] = (1 + several * missing) / lobe.energy_scale;
   }

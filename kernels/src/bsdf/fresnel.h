@@ -80,7 +80,7 @@ inline float fresnel_conductor(float cos_i, float n, float k) {
   const float r_s = s + p > 0 ? (s - p) / (s + p) : 1;
   const float q = sqr(cos_i) * a2b2 + sqr(sin2), r = 2 * a * cos_i * sin2;
   const float r_p = q + r > 0 ? r_s * (q - r) / (q + r) : r_s;
-  return 0.5f * (r_s + r_p);
+  return std::max(0.0f, 0.5f * (r_s + r_p));  // rounding goes below 0 where the index is 1
 }
 inline Vec3 fresnel_conductor(float cos_i, const Vec3 &n, const Vec3 &k) {
   return {fresnel_conductor(cos_i, n.x, k.x), fresnel_conductor(cos_i, n.y, k.y), fresnel_conductor(cos_i, n.z, k.z)};
