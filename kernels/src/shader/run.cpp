@@ -119,7 +119,10 @@ Vec3 bump(Run &run, const opal_instruction &c) {
     execute(nearby, height_code);
     return nearby.r.scalar(c.in[0]);
   };
-  const float here = height_at({}), hx = height_at(dx) - here, hy = height_at(dy) - here;
+  // Here the height is known, unless a bump within it was not left out as it is nearby.
+  const bool nested = std::any_of(height_code.begin(), height_code.end(), [](const auto &i) { return i.op == OPAL_OP_BUMP; });
+  const float here = nested ? height_at({}) : run.r.scalar(c.in[0]);
+  const float hx = height_at(dx) - here, hy = height_at(dy) - here;
   const Vec3 rx = cross(dy, normal), ry = cross(normal, dx);
   const float det = dot(dx, rx);
   float distance = run.r.scalar(c.in[2]);
