@@ -81,7 +81,23 @@ class GemStruct(ctypes.Structure):
 
 
 class MaterialStruct(ctypes.Structure):
-    _fields_ = [("surface", ProgramStruct), ("gem", POINTER(GemStruct)), ("flags", c_uint32), ("reserved", c_int32)]
+    _fields_ = [("surface", ProgramStruct), ("gem", POINTER(GemStruct)), ("flags", c_uint32), ("medium", c_int32)]
+
+
+class PhaseStruct(ctypes.Structure):
+    _fields_ = [
+        ("kind", c_int32),
+        ("anisotropy", c_float),
+        ("n_wavelengths", c_int32),
+        ("n_angles", c_int32),
+        ("wavelengths", _float_p),
+        ("angles", _float_p),
+        ("values", _float_p),
+    ]
+
+
+class MediumStruct(ctypes.Structure):
+    _fields_ = [("extinction", c_int32), ("scattering", c_int32), ("emission", c_int32), ("phase", c_int32)]
 
 
 class AttributeStruct(ctypes.Structure):
@@ -257,6 +273,9 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "opal_scene_destroy": (None, [c_void_p]),
     "opal_scene_add_image": (c_int32, [c_void_p, POINTER(ImageStruct)]),
     "opal_scene_add_spectrum": (c_int32, [c_void_p, _float_p]),
+    "opal_scene_add_phase": (c_int32, [c_void_p, POINTER(PhaseStruct)]),
+    "opal_scene_add_medium": (c_int32, [c_void_p, POINTER(MediumStruct)]),
+    "opal_scene_set_world_medium": (c_int32, [c_void_p, c_int32]),
     "opal_scene_add_material": (c_int32, [c_void_p, POINTER(MaterialStruct)]),
     "opal_scene_update_material": (c_int32, [c_void_p, c_int32, POINTER(MaterialStruct)]),
     "opal_scene_add_mesh": (c_int32, [c_void_p, POINTER(MeshStruct), _int_p]),
@@ -503,8 +522,38 @@ def scene_add_spectrum(scene: int, values: Any) -> int:
     return _checked(library().opal_scene_add_spectrum(scene, _pointer(values)))
 
 
-def _material(program: Any, gem: Any, flags: int, keep: list[Any]) -> MaterialStruct:
-    struct = MaterialStruct(flags=int(flags))
+def scene_add_phase(scene: int, phase: Phase) -> int:
+    """Adds a phase function and returns its number.
+
+    Parameters
+    ----------
+    phase : Phase
+        A table's rows are normalised by the kernels; its wavelengths and angles have to ascend.
+    """
+    struct = PhaseStruct(kind=int(phase.kind), anisotropy=float(phase.anisotropy))
+    keep = []
+    if phase.values is not None:
+        wavelengths = _floats("wavelengths", phase.wavelengths, (None,))
+        angles = _floats("angles", phase.angles, (None,))
+        values = _floats("values", phase.values, (len(wavelengths), len(angles)))
+        keep = [wavelengths, angles, values]
+        struct.n_wavelengths, struct.n_angles = len(wavelengths), len(angles)
+        struct.wavelengths, struct.angles, struct.values = map(_pointer, keep)
+    return _checked(library().opal_scene_add_phase(scene, byref(struct)))
+
+
+def scene_add_medium(scene: int, medium: Medium) -> int:
+    """Adds a medium, made of spectra and a phase function of this scene, and returns its number."""
+    return _checked(library().opal_scene_add_medium(scene, byref(_fill(MediumStruct(), medium))))
+
+
+def scene_set_world_medium(scene: int, medium: int) -> None:
+    """Fills the world with a medium; -1 takes it away."""
+    _checked(library().opal_scene_set_world_medium(scene, medium))
+
+
+def _material(program: Any, gem: Any, flags: int, keep: list[Any], medium: int = -1) -> MaterialStruct:
+    struct = MaterialStruct(flags=int(flags), medium=medium + 1)
     if program is not None:
         struct.surface = _program(program, keep)
     if gem is not None:
@@ -513,7 +562,7 @@ def _material(program: Any, gem: Any, flags: int, keep: list[Any]) -> MaterialSt
     return struct
 
 
-def scene_add_material(scene: int, program: Any = None, gem: Any = None, flags: int = 0) -> int:
+def scene_add_material(scene: int, program: Any = None, gem: Any = None, flags: int = 0, medium: int = -1) -> int:
     """Adds a material and returns its number.
 
     Parameters
@@ -523,15 +572,19 @@ def scene_add_material(scene: int, program: Any = None, gem: Any = None, flags: 
     gem : Gem, optional
         Replaces the program by a dielectric boundary.
     flags : MaterialFlag
+    medium : int
+        What fills the inside of the closed mesh, or -1.
     """
     keep: list[Any] = []
-    return _checked(library().opal_scene_add_material(scene, byref(_material(program, gem, flags, keep))))
+    return _checked(library().opal_scene_add_material(scene, byref(_material(program, gem, flags, keep, medium))))
 
 
-def scene_update_material(scene: int, index: int, program: Any = None, gem: Any = None, flags: int = 0) -> None:
+def scene_update_material(
+    scene: int, index: int, program: Any = None, gem: Any = None, flags: int = 0, medium: int = -1
+) -> None:
     """Replaces a material."""
     keep: list[Any] = []
-    _checked(library().opal_scene_update_material(scene, index, byref(_material(program, gem, flags, keep))))
+    _checked(library().opal_scene_update_material(scene, index, byref(_material(program, gem, flags, keep, medium))))
 
 
 def scene_add_mesh(

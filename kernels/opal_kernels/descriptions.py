@@ -80,6 +80,16 @@ class MaterialFlag(IntFlag):
     CASTER = 1
     EMISSIVE = 2
     TRANSPARENT_SHADOW = 4
+    NO_SURFACE = 8
+
+
+class PhaseKind(IntEnum):
+    """How a medium turns light."""
+
+    ISOTROPIC = 0
+    HENYEY_GREENSTEIN = 1
+    RAYLEIGH = 2
+    TABLE = 3
 
 
 class Carry(IntEnum):
@@ -173,6 +183,47 @@ class Gem:
     roughness: float = 0.0
     fresnel: int = Fresnel.EXACT
     priority: int = 0
+
+
+@dataclass
+class Phase:
+    """A phase function: per steradian, over the angle between propagation directions (0 is straight on).
+
+    Attributes
+    ----------
+    anisotropy : float
+        Henyey-Greenstein: the mean cosine, -1 to 1.
+    wavelengths, angles : array_like, optional
+        A table's nodes: (n,) nm and (m,) radians from 0 to π, ascending.
+    values : array_like, optional
+        (n, m) in 1/sr; rows are normalised.
+    """
+
+    kind: int = PhaseKind.ISOTROPIC
+    anisotropy: float = 0.0
+    wavelengths: object = None
+    angles: object = None
+    values: object = None
+
+
+@dataclass
+class Medium:
+    """A homogeneous participating medium, by numbers that the scene gave.
+
+    Attributes
+    ----------
+    extinction, scattering : int
+        Spectra in 1/m; -1 is 0.
+    emission : int
+        Spectrum of radiance per metre; -1 is none.
+    phase : int
+        Phase function; -1 is isotropic.
+    """
+
+    extinction: int = -1
+    scattering: int = -1
+    emission: int = -1
+    phase: int = -1
 
 
 @dataclass

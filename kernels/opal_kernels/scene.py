@@ -12,7 +12,19 @@ from typing import Any
 import numpy as np
 
 from . import binding, data, libraries
-from .descriptions import Attribute, Camera, Gem, Light, MaterialFlag, Program, Ray, Transfer, World
+from .descriptions import (
+    Attribute,
+    Camera,
+    Gem,
+    Light,
+    MaterialFlag,
+    Medium,
+    Phase,
+    Program,
+    Ray,
+    Transfer,
+    World,
+)
 
 
 class Scene:
@@ -82,16 +94,58 @@ class Scene:
         return binding.scene_add_spectrum(self.handle, values)
 
     def add_material(
-        self, program: Program | None = None, gem: Gem | None = None, flags: MaterialFlag = MaterialFlag(0)
+        self,
+        program: Program | None = None,
+        gem: Gem | None = None,
+        flags: MaterialFlag = MaterialFlag(0),
+        medium: int = -1,
     ) -> int:
         """Adds a material; see `binding.scene_add_material`."""
-        return binding.scene_add_material(self.handle, program, gem, flags)
+        return binding.scene_add_material(self.handle, program, gem, flags, medium)
 
     def update_material(
-        self, index: int, program: Program | None = None, gem: Gem | None = None, flags: MaterialFlag = MaterialFlag(0)
+        self,
+        index: int,
+        program: Program | None = None,
+        gem: Gem | None = None,
+        flags: MaterialFlag = MaterialFlag(0),
+        medium: int = -1,
     ) -> None:
         """Replaces a material; `commit` afterwards."""
-        binding.scene_update_material(self.handle, index, program, gem, flags)
+        binding.scene_update_material(self.handle, index, program, gem, flags, medium)
+
+    def add_medium(
+        self, extinction: Any, albedo: Any = 1.0, phase: Phase | None = None, emission: Any = None
+    ) -> int:
+        """Adds a homogeneous medium from spectra.
+
+        Parameters
+        ----------
+        extinction : float or array_like
+            σt in 1/m: one number or 471 values.
+        albedo : float or array_like
+            σs / σt, likewise.
+        phase : Phase, optional
+            None is isotropic.
+        emission : float or array_like, optional
+            Radiance per metre, likewise.
+
+        Returns
+        -------
+        int
+            The medium's number, for `add_material` and `set_world_medium`.
+        """
+        extinction = np.broadcast_to(np.asarray(extinction, np.float64), (471,))
+        medium = Medium(self.add_spectrum(extinction), self.add_spectrum(extinction * np.asarray(albedo, np.float64)))
+        if emission is not None:
+            medium.emission = self.add_spectrum(np.broadcast_to(np.asarray(emission, np.float64), (471,)))
+        if phase is not None:
+            medium.phase = binding.scene_add_phase(self.handle, phase)
+        return binding.scene_add_medium(self.handle, medium)
+
+    def set_world_medium(self, medium: int) -> None:
+        """Fills the world with a medium; -1 takes it away."""
+        binding.scene_set_world_medium(self.handle, medium)
 
     def add_gem(
         self, index: Any, absorption: Any = None, roughness: float = 0.0, fresnel: int = 0, priority: int = 0

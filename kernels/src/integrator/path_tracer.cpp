@@ -236,8 +236,8 @@ class CameraPath {
   void roulette(float u) {
     if (bounces_ < kRouletteStart) return;
     const float q = clamp((throughput_.max() * eta_scale_) / path_pdf_.average(), 0.0f, 1.0f);
-    // Inside a gem nothing is lost at a reflection; a small chance to stop keeps the longest chains finite.
-    const float survive = bounces_ > 64 ? std::min(q, 0.95f) : q;
+    // Where nothing is lost, a small chance to stop keeps the longest chains finite.
+    const float survive = bounces_ > 256 ? std::min(q, 0.98f) : q;
     if (!(u < survive)) {
       alive_ = false;
       return;
