@@ -68,7 +68,7 @@ def image_texture(n: NodeView) -> dict[str, Value]:
         n.problem("No image is chosen; it is magenta." if n.linked("Vector") else "No image is chosen; it is black.")
         return {"Color": MAGENTA if n.linked("Vector") else constant(0.0, 0.0, 0.0), "Alpha": ONE}
     projection = n.node.projection
-    return _image(n, position(n, "UV" if projection == "FLAT" else "GENERATED"), projection, n.node.extension)
+    return _image(n, position(n, "UV"), projection, n.node.extension)
 
 
 @reads("ShaderNodeTexEnvironment")

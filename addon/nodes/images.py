@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender images as arrays for the tracer.
+
+Bytes stay bytes: an 8-bit sRGB image is decoded by the kernels after interpolation, as in Cycles. Float images are scene linear
+in Blender already. Other colour spaces are converted here by OpenColorIO, with Blender's own configuration. Colours are
+multiplied by alpha unless the image says otherwise (Channel Packed, None, data).
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Callable
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+from .context import Problem
+
+TRANSFER_LINEAR, TRANSFER_SRGB = 0, 1
+_SRGB = {"sRGB", "sRGB Texture"}
+_LINEAR = {"Linear", "Linear Rec.709", "Linear Rec.709 (sRGB)", "scene_linear", "Non-Color", "Raw", "Generic Data"}
+_READ_AS_LOADED = {"SEQUENCE", "MOVIE"}
+
+
+class Images:
+    """A kernel scene's images by Blender's, each once.
+
+    Parameters
+    ----------
+    add_image : callable
+        Takes pixels (height, width, channels), uint8 or float32, rows from the bottom up, and the transfer; returns a number.
+    note : callable
+        Takes a `Problem`.
+    """
+
+    def __init__(self, add_image: Callable[[np.ndarray, int], int], note: Callable[[Problem], None]) -> None:
+        self._add, self._note = add_image, note
+        self._numbers: dict[tuple, int] = {}
+
+    def index(self, image: Any, image_user: Any = None) -> int:
+        """The number of an image; -1 where it cannot be read."""
+        if image.source in _READ_AS_LOADED:
+            self._note(Problem(image.name, "", "Sequences and films show the frame that Blender has loaded."))
+        return self._number((image.as_pointer(),), image, lambda: loaded_pixels(image))
+
+    def tiles(self, image: Any) -> list[tuple[int, int]]:
+        """(UDIM number, kernel number) of the tiles that can be read."""
+        found = []
+        for position, tile in enumerate(image.tiles):
+            key = (image.as_pointer(), tile.number)
+            number = self._number(key, image, lambda p=position, t=tile.number: tile_pixels(image, p, t))
+            if number >= 0:
+                found.append((tile.number, number))
+        return found
+
+    def _number(self, key: tuple, image: Any, read: Callable[[], np.ndarray | None]) -> int:
+        if key not in self._numbers:
+            self._numbers[key] = self._read(image, read)
+        return self._numbers[key]
+
+    def _read(self, image: Any, read: Callable[[], np.ndarray | None]) -> int:
+        try:
+            pixels = read()
+        except (OSError, RuntimeError, MemoryError, ImportError) as error:
+            self._note(Problem(image.name, "", f"The image cannot be read ({error}); it is magenta."))
+            return -1
+        if pixels is None:
+            where = image.filepath_raw or "nowhere"
+            self._note(Problem(image.name, "", f"The image is not found at {where}; it is magenta."))
+            return -1
+        pixels, transfer, sentence = prepared(pixels, image)
+        if sentence:
+            self._note(Problem(image.name, "", sentence))
+        return self._add(pixels, transfer)
+
+
+def loaded_pixels(image: Any) -> np.ndarray | None:
+    """What Blender holds of an image.
+
+    Returns
+    -------
+    ndarray or None
+        (height, width, channels): uint8 as stored, or float32 scene linear; None where there is nothing.
+    """
+    width, height = image.size
+    channels = image.channels
+    if width == 0 or height == 0 or channels == 0:
+        return None
+    values = np.empty(width * height * channels, np.float32)
+    image.pixels.foreach_get(values)
+    values = values.reshape(height, width, channels)
+    return values if image.is_float else np.rint(values * 255).clip(0, 255).astype(np.uint8)
+
+
+def tile_pixels(image: Any, position: int, number: int) -> np.ndarray | None:
+    """One tile of a tiled image, read from its file or from what is packed; shape and type as `loaded_pixels`."""
+    if image.packed_files:
+        data = image.packed_files[position].packed_file.data if position < len(image.packed_files) else b""
+        with _as_file(bytes(data)) as path:
+            return _file_pixels(path)
+    import bpy
+
+    u, v = (number - 1001) % 10, (number - 1001) // 10
+    path = bpy.path.abspath(image.filepath_raw, library=image.library)
+    path = path.replace("<UDIM>", str(number)).replace("<UVTILE>", f"u{u + 1}_v{v + 1}")
+    return _file_pixels(path) if os.path.isfile(path) else None
+
+
+@contextmanager
+def _as_file(data: bytes):
+    handle, path = tempfile.mkstemp()
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+        yield path
+    finally:
+        os.unlink(path)
+
+
+def _file_pixels(path: str) -> np.ndarray | None:
+    import bpy
+
+    bpy.utils.expose_bundled_modules()
+    import OpenImageIO as oiio
+
+    source = oiio.ImageInput.open(path)
+    if source is None:
+        return None
+    is_bytes = source.spec().format == oiio.UINT8
+    pixels = source.read_image(oiio.UINT8 if is_bytes else oiio.FLOAT)
+    source.close()
+    if pixels is None:
+        return None
+    pixels = np.asarray(pixels)
+    if pixels.ndim == 2:
+        pixels = pixels[:, :, None]
+    if pixels.shape[2] == 2:  # grey and alpha
+        pixels = pixels[:, :, [0, 0, 0, 1]]
+    return np.ascontiguousarray(pixels[::-1, :, :4])
+
+
+def prepared(pixels: np.ndarray, image: Any) -> tuple[np.ndarray, int, str]:
+    """Pixels in the form that the tracer takes: alpha multiplied in, colours linear or to be decoded as sRGB.
+
+    Parameters
+    ----------
+    pixels : ndarray
+        As `loaded_pixels` gives them.
+    image
+        For its alpha mode and colour space.
+
+    Returns
+    -------
+    ndarray
+        (height, width, channels), uint8 or float32; without alpha where that is 1 everywhere.
+    int
+        The transfer.
+    str
+        A sentence on what could not be kept, or empty.
+    """
+    space, is_data = image.colorspace_settings.name, image.colorspace_settings.is_data
+    if pixels.shape[2] == 4 and (image.alpha_mode == "NONE" or not _any_transparent(pixels)):
+        pixels = pixels[:, :, :3]
+    if pixels.shape[2] == 2:
+        pixels = pixels[:, :, :1]
+    transfer, sentence = TRANSFER_LINEAR, ""
+    if pixels.dtype == np.uint8 and not is_data:
+        if space in _SRGB:
+            transfer = TRANSFER_SRGB
+        elif space not in _LINEAR:
+            converted = _converted(pixels, space)
+            if converted is None:
+                transfer, sentence = TRANSFER_SRGB, f"The colour space {space} is not known here; sRGB is taken for it."
+            else:
+                pixels = converted
+        if pixels.shape[2] == 4 and image.alpha_mode != "CHANNEL_PACKED":
+            pixels = _premultiplied(pixels)
+    elif pixels.dtype == np.float32:
+        pixels = np.nan_to_num(pixels, nan=0.0, posinf=65504.0, neginf=0.0)
+    return np.ascontiguousarray(pixels), transfer, sentence
+
+
+def _any_transparent(pixels: np.ndarray) -> bool:
+    opaque = 255 if pixels.dtype == np.uint8 else 1.0
+    return bool((pixels[:, :, 3] != opaque).any())
+
+
+def _premultiplied(pixels: np.ndarray) -> np.ndarray:
+    if pixels.dtype != np.uint8:
+        return np.concatenate([pixels[:, :, :3] * pixels[:, :, 3:], pixels[:, :, 3:]], axis=2)
+    wide = pixels.astype(np.uint16)
+    wide[:, :, :3] = wide[:, :, :3] * wide[:, :, 3:] // 255
+    return wide.astype(np.uint8)
+
+
+def _converted(pixels: np.ndarray, space: str) -> np.ndarray | None:
+    """8-bit colours of a named space as scene linear float32, by OpenColorIO; None where that is not possible."""
+    try:
+        import bpy
+
+        bpy.utils.expose_bundled_modules()
+        import PyOpenColorIO as ocio
+
+        path = os.environ.get("OCIO") or os.path.join(bpy.utils.system_resource("DATAFILES"), "colormanagement", "config.ocio")
+        processor = ocio.Config.CreateFromFile(path).getProcessor(space, "scene_linear").getDefaultCPUProcessor()
+    except (ImportError, AttributeError, Exception):  # OpenColorIO raises its own kind
+        return None
+    colors = np.ascontiguousarray(pixels[:, :, :3] if pixels.shape[2] > 1 else pixels.repeat(3, axis=2)).astype(np.float32) / 255
+    processor.applyRGB(colors)
+    if pixels.shape[2] == 4:
+        colors = np.concatenate([colors, pixels[:, :, 3:].astype(np.float32) / 255], axis=2)
+    return colors
