@@ -1,9 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+"""What a person presses or a script calls."""
+
+from __future__ import annotations
+
+from . import add_gem, import_gemcad
+
+_MODULES = (add_gem, import_gemcad)
 
 
 def register() -> None:
-    pass
+    """Register every operator."""
+    for module in _MODULES:
+        module.register()
 
 
 def unregister() -> None:
-    pass
+    """Take them away again, in the opposite order."""
+    for module in reversed(_MODULES):
+        module.unregister()

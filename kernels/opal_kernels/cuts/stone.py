@@ -100,4 +100,4 @@ class FacetPlanes:
 def check_fraction(name: str, value: float, low: float, high: float) -> None:
     """Refuse a proportion outside its range with a sentence."""
     if not (math.isfinite(value) and low <= value <= high):
-        raise ValueError(f"{name} must lie between {low:g} and {high:g}, not {value!r}")
+        raise ValueError(f"{name} must lie between {low:g} and {high:g}, not {value:.4g}")

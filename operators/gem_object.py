@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From a cut stone and a species to Blender's mesh and material."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import bpy
+
+if TYPE_CHECKING:
+    from opal_kernels.cuts import Stone
+
+CUSTOM = "CUSTOM"
+
+
+def mesh_from_stone(stone: Stone, name: str, smooth: Sequence[str] = ()) -> bpy.types.Mesh:
+    """A mesh of planar polygons, as they are cut.
+
+    Parameters
+    ----------
+    stone : Stone
+        In metres.
+    name : str
+        Of the mesh.
+    smooth : sequence of str
+        Names of facets that stand for a curved surface.
+    """
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(stone.solid.vertices.tolist(), [], [list(face) for face in stone.solid.faces])
+    mesh.polygons.foreach_set("use_smooth", [facet in smooth for facet in stone.names])
+    mesh.update()
+    return mesh
+
+
+def gem_material(species: str, index: float | None = None) -> bpy.types.Material:
+    """The gem material of a species, made once a file.
+
+    Parameters
+    ----------
+    species : str
+        A name of `material.opal.gem.species`.
+    index : float, optional
+        With the species ``CUSTOM``: an index of refraction without dispersion.
+    """
+    name = label_of(species) if index is None else f"Gem {index:.3f}"
+    for material in bpy.data.materials:
+        if material.name.split(".")[0] == name.split(".")[0] and material.opal.kind == "GEM" and material.opal.gem.species == species:
+            if index is None or abs(material.opal.gem.cauchy_b - index) < 1e-6:
+                return material
+    material = bpy.data.materials.new(name)
+    material.opal.kind = "GEM"
+    material.opal.gem.species = species
+    if index is not None:
+        material.opal.gem.dispersion = "CAUCHY"
+        material.opal.gem.cauchy_b = index
+        material.opal.gem.cauchy_c = 0.0
+    return material
+
+
+def label_of(species: str) -> str:
+    """What people call a species."""
+    if species == CUSTOM:
+        return "Gem"
+    from opal_kernels.optics.species import get
+
+    return get(species).label
+
+
+def weight(stone: Stone, species: str) -> str:
+    """The stone's weight as a sentence's end, or its volume where the species has no density."""
+    if species == CUSTOM:
+        return f"{stone.solid.volume() * 1e9:.1f} mm³"
+    from opal_kernels.optics.species import get
+
+    return f"{stone.carats(1e3 * get(species).density):.2f} ct"
