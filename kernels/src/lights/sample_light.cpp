@@ -221,7 +221,7 @@ int escaped_radiance(const Scene &scene, const Vec3 &direction, uint32_t ray_kin
   }
   if (scene.world.present && n < capacity && visible_to(scene.world.visibility, ray_kind)) {
     const Vec3 rgb = world_radiance(scene, direction, ray_kind);
-    if (max_component(max(rgb, -rgb)) > 0) out[n++] = {{SourceKind::World, 0}, uplift_light(rgb, w)};
+    if (max_component(rgb) > 0) out[n++] = {{SourceKind::World, 0}, uplift_light(rgb, w)};
   }
   return n;
 }

@@ -30,14 +30,16 @@ float importance(const Vec3 &rgb) {
 
 Vec3 world_radiance(const Scene &scene, const Vec3 &d, uint32_t ray_kind) {
   const Program &program = scene.world.program;
-  if (program.constant_emission) return program.emission;
+  if (program.constant_emission) return max(Vec3{}, program.emission);
   ShadingPoint sp;
   sp.p = d;
   sp.wo = -d;
   sp.ng = sp.ns = -d;
   sp.ray_kind = ray_kind;
   sp.ray_length = kInfinity;
-  return run_emission(scene, program, sp);
+  // A pixel of a picture may be anything: below zero and NaN count as black.
+  const Vec3 rgb = max(Vec3{}, run_emission(scene, program, sp));
+  return is_finite(rgb) ? rgb : Vec3{};
 }
 
 Vec3 WorldLight::direction_of(float u, float v) {
