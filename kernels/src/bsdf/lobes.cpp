@@ -42,9 +42,7 @@ void add_diffuse_lobe(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weigh
 }
 
 Lobe *add_sheen_lobe(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, float roughness, const Vec3 &normal) {
-  const float cosine = dot(normal, sp.wo);
-  if (!(cosine > 0)) return nullptr;
-  const SheenParameters p = sheen_parameters(cosine, roughness);
+  const SheenParameters p = sheen_parameters(dot(normal, sp.wo), roughness);
   Lobe *lobe = set.add(LobeKind::Sheen, weight * p.albedo, normal);
   if (!lobe) return nullptr;
   lobe->params[0] = p.a;

@@ -68,7 +68,7 @@ struct PrincipledInputs {
   float coat_roughness = 0.03f;
   float coat_ior = 1.5f;
   Vec3 coat_tint{1, 1, 1};
-  Vec3 coat_normal;                 // zero: as normal
+  Vec3 coat_normal;                 // zero: sp.ns, whatever `normal` is
   float sheen_weight = 0;
   float sheen_roughness = 0.5f;
   Vec3 sheen_tint{1, 1, 1};

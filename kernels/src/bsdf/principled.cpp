@@ -126,9 +126,7 @@ struct Layers {
 
 void add_principled(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const PrincipledInputs &in) {
   const Vec3 normal = shading_normal(in.normal, sp);
-  // An unlinked coat normal follows the node's normal.
-  const Vec3 coat_normal = safe_normalize(in.coat_normal, normal);
-  Layers layers{set, sp, in, weight, normal, mirror_normal(normal, sp), coat_normal};
+  Layers layers{set, sp, in, weight, normal, mirror_normal(normal, sp), shading_normal(in.coat_normal, sp)};
   layers.alpha();
   layers.sheen();
   layers.coat();

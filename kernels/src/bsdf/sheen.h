@@ -14,7 +14,7 @@ namespace opal {
 struct SheenParameters {
   float a = 1, b = 0, albedo = 0;
 };
-// roughness in [0,1] as in the socket; cosine of the viewer in [0,1].
+// roughness in [0,1] as in the socket; cosine of the viewer, below 0 (a bent normal) as 0.
 SheenParameters sheen_parameters(float cosine, float roughness);
 
 inline Frame sheen_frame(const Lobe &lobe, const Vec3 &wo) { return Frame::from_zx(lobe.normal, wo); }
