@@ -1,9 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+"""Opal in Blender: the engine, its settings and its panels. The kernels load with the first render, not here."""
+
+from __future__ import annotations
+
+from . import engine, panels, properties, report
+
+_MODULES = (properties, engine, panels)
 
 
 def register() -> None:
-    pass
+    for module in _MODULES:
+        module.register()
 
 
 def unregister() -> None:
-    pass
+    for module in reversed(_MODULES):
+        module.unregister()
+    report.clear()

@@ -51,6 +51,7 @@ class Group:
     rows: np.ndarray
     transforms: np.ndarray
     object_info: np.ndarray
+    transforms_end: np.ndarray | None = None  # at shutter close
 
 
 @dataclass

@@ -248,6 +248,7 @@ typedef struct opal_world_desc {
   int32_t reserved;
 } opal_world_desc;
 
+/* world: NULL is black. */
 OPAL_EXPORT int32_t opal_scene_set_world(opal_scene *scene, const opal_world_desc *world);
 
 /* ---- Camera ---- */

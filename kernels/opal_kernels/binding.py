@@ -253,6 +253,8 @@ STRUCTURES = {
     "opal_instruction": InstructionStruct,
     "opal_program": ProgramStruct,
     "opal_gem_desc": GemStruct,
+    "opal_phase_desc": PhaseStruct,
+    "opal_medium_desc": MediumStruct,
     "opal_material_desc": MaterialStruct,
     "opal_attribute_desc": AttributeStruct,
     "opal_mesh_desc": MeshStruct,

@@ -31,10 +31,16 @@ class Render:
     ------
     OpalError
         If a setting is out of range, the scene is not committed, or memory is short.
+
+    Attributes
+    ----------
+    passes_done : int
+        Passes in the film.
     """
 
     def __init__(self, scene: Scene, settings: RenderSettings | None = None, **fields: Any) -> None:
         self._handle = 0
+        self.passes_done = 0
         self.settings = settings if settings is not None else RenderSettings(**fields)
         self._scene = scene  # keeps it alive
         self._handle = binding.render_create(scene.handle, self.settings)
@@ -84,6 +90,7 @@ class Render:
             If `cancel` was called meanwhile; the film then holds complete passes only.
         """
         binding.render_pass(self.handle, number)
+        self.passes_done += 1
 
     def run(self, passes: int, each: Callable[[int], None] | None = None) -> Render:
         """Renders passes 0 .. ``passes`` - 1, calling ``each`` with the number of every finished one."""

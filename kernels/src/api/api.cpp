@@ -383,7 +383,12 @@ int32_t opal_scene_clear_lights(opal_scene *scene) {
 
 int32_t opal_scene_set_world(opal_scene *scene, const opal_world_desc *desc) {
   return guarded([&] {
-    require(scene && desc, "No world");
+    require(scene, "No scene");
+    scene->lights_dirty = true;
+    if (!desc) {
+      scene->world = World();
+      return 0;
+    }
     World world;
     const char *error = nullptr;
     if (!program_from_desc(desc->program, int(scene->images.size()), world.program, &error))

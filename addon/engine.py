@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The render engine that Blender calls. The kernels load with the first render, not with this module."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+
+
+class OpalRenderEngine(bpy.types.RenderEngine):
+    """Spectral path tracing with photons for what paths cannot find."""
+
+    bl_idname = "OPAL"
+    bl_label = "Opal"
+    bl_use_preview = True
+    bl_use_postprocess = True
+    bl_use_shading_nodes_custom = False
+    bl_use_eevee_viewport = True
+    bl_use_spherical_stereo = False
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self._viewport: Any = None
+
+    def __del__(self) -> None:
+        viewport = getattr(self, "_viewport", None)
+        if viewport is not None:
+            viewport.close()
+
+    def update_render_passes(self, scene: Any = None, renderlayer: Any = None) -> None:
+        """Tells the compositor which passes there are."""
+        from . import render_passes
+
+        self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
+        for row in render_passes.wanted(renderlayer):
+            self.register_pass(scene, renderlayer, row.name, len(row.channels), row.channels, row.socket)
+
+    def render(self, depsgraph: Any) -> None:
+        """A final render or a material preview, of one view layer."""
+        from .final_render import render
+
+        render(self, depsgraph)
+
+    def view_update(self, context: Any, depsgraph: Any) -> None:
+        """Something in the scene changed."""
+        self._view(context).update(context, depsgraph)
+
+    def view_draw(self, context: Any, depsgraph: Any) -> None:
+        """Draws what the viewport's render has so far."""
+        self._view(context).draw(context, depsgraph)
+
+    def _view(self, _context: Any) -> Any:
+        if self._viewport is None:
+            from .viewport import Viewport
+
+            self._viewport = Viewport(self)
+        return self._viewport
+
+
+def register() -> None:
+    bpy.utils.register_class(OpalRenderEngine)
+
+
+def unregister() -> None:
+    bpy.utils.unregister_class(OpalRenderEngine)

@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A final render: translate, render pass after pass while the person may stop, show, finish.
+
+A pass runs in a thread of its own, because Blender only asks whether to stop on the thread that it gave to the engine.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import Any
+
+import numpy as np
+from opal_kernels import denoise, memory
+from opal_kernels.binding import Cancelled, OpalError
+from opal_kernels.descriptions import Pass, RenderSettings
+from opal_kernels.render import Render
+from opal_kernels.scene import Scene
+
+from . import report, settings, spectral_exr
+from .render_passes import RenderPass, wanted
+from .translate.camera import camera_from_object
+from .translate.scene_builder import SceneBuilder, Stopped
+
+# How long the engine's thread sleeps between looking whether the person wants to stop.
+_POLL_SECONDS = 0.03
+# Blender is shown the picture at most this often, and at once after the first pass.
+_SHOW_SECONDS = 1.0
+# Part of the free memory that a film may take.
+_MEMORY_SHARE = 0.8
+
+
+def render(engine: Any, depsgraph: Any) -> None:
+    """Renders one view layer into the engine's result; what fails is reported in one sentence."""
+    scene = depsgraph.scene
+    found = report.start(scene)
+    try:
+        _FinalRender(engine, depsgraph, found).run()
+    except Stopped:
+        return
+    except (OpalError, ValueError, MemoryError) as error:
+        sentence = str(error) or "There is not enough memory to render this scene."
+        engine.report({"ERROR"}, sentence)
+        engine.error_set(sentence)
+        return
+    if not engine.is_preview and (summary := found.summary()):
+        engine.report({"WARNING"}, summary)
+
+
+class _FinalRender:
+    """One view layer's render."""
+
+    def __init__(self, engine: Any, depsgraph: Any, found: report.Report) -> None:
+        self.engine, self.depsgraph, self.report = engine, depsgraph, found
+        self.scene = depsgraph.scene_eval
+        self.layer = depsgraph.view_layer_eval
+        self.frame = settings.frame_of(self.scene.render)
+        self.passes: list[RenderPass] = [] if engine.is_preview else wanted(depsgraph.view_layer)
+        self.denoise = self.scene.opal.denoise and not engine.is_preview
+        self.settings = self._settings()
+        self.last_shown = -np.inf
+
+    def _settings(self) -> RenderSettings:
+        kept: list[Pass] = [row.source for row in self.passes]
+        if self.denoise:
+            kept += [Pass.ALBEDO, Pass.NORMAL]
+        return settings.render_settings(self.scene, self.frame, sorted(set(kept)), self.engine.is_preview)
+
+    def run(self) -> None:
+        self._refuse_what_does_not_fit()
+        with self._translate() as scene, Render(scene, self.settings) as render:
+            width, height = self.frame.region_size
+            result = self.engine.begin_result(0, 0, width, height, layer=self.layer.name)
+            cancelled = False
+            try:
+                cancelled = not self._run_passes(render, result)
+                self._write_everything(render, result)
+                if not cancelled:
+                    self._write_spectrum(render)
+            finally:
+                self.engine.end_result(result, cancel=False, do_merge_results=False)
+
+    def _refuse_what_does_not_fit(self) -> None:
+        width, height = self.frame.region_size
+        needed = memory.film_bytes(width * height, self.settings.passes, self.settings.spectral_bins)
+        available = memory.available_bytes()
+        if available is not None and needed > _MEMORY_SHARE * available:
+            raise OpalError(
+                f"Rendering {width} x {height} pixels would take {needed / 2**30:.1f} GB of memory and "
+                f"{available / 2**30:.1f} GB are free: lower Resolution or render a border."
+            )
+
+    def _stage(self, text: str) -> None:
+        self.engine.update_stats("", text)
+        if self.engine.test_break():
+            raise Stopped
+
+    def _translate(self) -> Scene:
+        builder = SceneBuilder(self.report, self.settings.threads, self._stage)
+        try:
+            motion = self.settings.motion_blur
+            start, end = _shutter(self.scene.render) if motion else (0.0, 0.0)
+            frame, subframe = self.scene.frame_current, self.scene.frame_subframe
+            if motion:
+                self._go_to(frame + subframe + start)
+            snapshot = builder.read(self.depsgraph)
+            matrix = self._camera_matrix()
+            matrix_end = None
+            if motion:
+                self._go_to(frame + subframe + end)
+                builder.read_end(self.depsgraph, snapshot)
+                matrix_end = self._camera_matrix()
+                self.engine.frame_set(frame, subframe)
+            camera = camera_from_object(
+                self._camera(),
+                self.scene,
+                self.frame.width,
+                self.frame.height,
+                matrix=matrix,
+                matrix_end=matrix_end,
+                report=self.report.add,
+            )
+            return builder.finish(snapshot, camera)
+        except BaseException:
+            builder.scene.close()
+            raise
+
+    def _go_to(self, time_in_frames: float) -> None:
+        whole = int(np.floor(time_in_frames))
+        self.engine.frame_set(whole, time_in_frames - whole)
+
+    def _camera(self) -> Any:
+        camera = self.engine.camera_override or self.scene.camera
+        if camera is None:
+            raise OpalError(f"The scene “{self.depsgraph.scene.name}” has no camera to render from.")
+        return camera.evaluated_get(self.depsgraph)
+
+    def _camera_matrix(self) -> Any:
+        return self._camera().matrix_world.copy()
+
+    def _run_passes(self, render: Render, result: Any) -> bool:
+        """Renders until the passes, the time or the noise say enough; False if the person stopped it."""
+        opal = self.scene.opal
+        total = settings.PREVIEW_PASSES if self.engine.is_preview else opal.passes
+        threshold = 0.0 if self.engine.is_preview else opal.noise_threshold
+        begun = time.monotonic()
+        for number in range(total):
+            if not self._run_pass(render, number, total, begun):
+                return False
+            now = time.monotonic()
+            if number + 1 < total and now - self.last_shown > _SHOW_SECONDS:
+                self._show(render, result)
+            if opal.time_limit and now - begun >= opal.time_limit:
+                break
+            if threshold and 0 <= render.noise < threshold:
+                break
+        return True
+
+    def _run_pass(self, render: Render, number: int, total: int, begun: float) -> bool:
+        failures: list[BaseException] = []
+
+        def work() -> None:
+            try:
+                render.run_pass(number)
+            except BaseException as error:
+                failures.append(error)
+
+        worker = threading.Thread(target=work, name="Opal pass")
+        worker.start()
+        stopped = False
+        last_told = -np.inf
+        while worker.is_alive():
+            worker.join(_POLL_SECONDS)
+            if not stopped and self.engine.test_break():
+                stopped = True
+                render.cancel()
+            if (now := time.monotonic()) - last_told > 0.25:
+                last_told = now
+                self._tell(number, total, number + render.progress, now - begun)
+        for failure in failures:
+            if not isinstance(failure, Cancelled):
+                raise failure
+            return False
+        return not stopped
+
+    def _tell(self, number: int, total: int, done: float, elapsed: float) -> None:
+        limit = self.scene.opal.time_limit
+        left = elapsed / done * (total - done) if done > 0 else None
+        fraction = done / total
+        if limit:
+            left = min(left, max(0.0, limit - elapsed)) if left is not None else max(0.0, limit - elapsed)
+            fraction = max(fraction, min(1.0, elapsed / limit))
+        remaining = f" | Remaining: {_clock(left)}" if left is not None else ""
+        self.engine.update_stats("", f"Pass {number + 1} of {total} | Time: {_clock(elapsed)}{remaining}")
+        self.engine.update_progress(fraction)
+
+    # ---- Pixels ----
+
+    def _show(self, render: Render, result: Any) -> None:
+        self.last_shown = time.monotonic()
+        _put(result, "Combined", render.film(Pass.COMBINED))
+        self.engine.update_result(result)
+
+    def _write_everything(self, render: Render, result: Any) -> None:
+        combined = render.film(Pass.COMBINED)
+        if self.denoise and render.passes_done:
+            combined = self._denoised(render, combined)
+        _put(result, "Combined", combined)
+        for row in self.passes:
+            _put(result, row.name, render.film(row.source))
+
+    def _denoised(self, render: Render, combined: np.ndarray) -> np.ndarray:
+        self.engine.update_stats("", "Denoising")
+        try:
+            guides = render.film(Pass.ALBEDO), render.film(Pass.NORMAL)
+            return denoise.denoise(combined, *guides, threads=self.settings.threads)
+        except OpalError as error:
+            self.report.add("", f"The picture is not denoised: {error}")
+            return combined
+
+    def _write_spectrum(self, render: Render) -> None:
+        if not self.settings.spectral_bins:
+            return
+        path = spectral_exr.output_path(self.scene, self.layer.name)
+        first, last = self.settings.wavelength_first, self.settings.wavelength_last
+        centers = spectral_exr.bin_centers(first, last, self.settings.spectral_bins)
+        try:
+            spectral_exr.write(path, render.film(Pass.SPECTRAL), render.film(Pass.COMBINED), centers)
+        except OpalError as error:
+            self.report.add("", str(error))
+
+
+def _shutter(render: Any) -> tuple[float, float]:
+    """Shutter open and close in frames relative to the current one."""
+    length = render.motion_blur_shutter
+    start = {"START": 0.0, "CENTER": -0.5 * length, "END": -length}[render.motion_blur_position]
+    return start, start + length
+
+
+def _put(result: Any, name: str, pixels: np.ndarray) -> None:
+    for candidate in result.layers[0].passes:
+        if candidate.name == name:
+            candidate.rect.foreach_set(np.ascontiguousarray(pixels, np.float32).reshape(-1))
+
+
+def _clock(seconds: float) -> str:
+    whole = int(seconds)
+    hours, minutes = whole // 3600, whole // 60 % 60
+    return f"{hours}:{minutes:02d}:{whole % 60:02d}" if hours else f"{minutes:02d}:{seconds % 60:05.2f}"
+

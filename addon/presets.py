@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Gem species in the interface: the list, and what happens when one is chosen or a number is edited.
+
+Choosing a species fills the numbers; editing a number makes the species Custom and keeps every other number. Numbers that
+cannot be rendered are refused: the last ones that could are put back, and the sentence stands in the panel until the next edit.
+"""
+
+from __future__ import annotations
+
+import zlib
+from typing import Any
+
+CUSTOM = "CUSTOM"
+
+# Blender keeps the strings of a dynamic enumeration by reference only: they have to live here.
+_items: list[tuple[str, str, str, int]] = []
+# True while this module writes properties itself, so that their callbacks stay silent.
+_filling = False
+
+
+def species_items(_owner: Any = None, _context: Any = None) -> list[tuple[str, str, str, int]]:
+    """Items of `material.opal.gem.species`."""
+    if not _items:
+        from opal_kernels.optics import species
+
+        _items.append((CUSTOM, "Custom", "The numbers below, as they are", 0))
+        for name, row in species.table().items():
+            _items.append((name, row.label, f"{row.label}: index of refraction after {row.source}", species_number(name)))
+    return _items
+
+
+def species_number(name: str) -> int:
+    """What a species is saved as: a number made of its name, so that rows may come and go in the table."""
+    return zlib.crc32(name.encode()) & 0x7FFFFFFF
+
+
+def settings_of(gem: Any) -> Any:
+    """The `opal_kernels.gem.Settings` that a gem's properties show."""
+    from opal_kernels.gem import Settings
+
+    return Settings(
+        dispersion=gem.dispersion,
+        cauchy=(gem.cauchy_b, gem.cauchy_c),
+        sellmeier_b=tuple(gem.sellmeier_b),
+        sellmeier_c=tuple(gem.sellmeier_c),
+        absorption_color=tuple(gem.absorption_color),
+        absorption_depth=gem.absorption_depth,
+    )
+
+
+def read_out(gem: Any) -> Any:
+    """The `opal_kernels.gem.ReadOut` of a gem; None where its numbers cannot be rendered."""
+    from opal_kernels import gem as gems
+
+    if gem.species != CUSTOM:
+        return gems.read_out_of_species(gem.species)
+    settings = settings_of(gem)
+    return None if gems.refusal(settings) else gems.read_out(settings)
+
+
+def _write(gem: Any, settings: Any) -> None:
+    gem.dispersion = settings.dispersion
+    gem.cauchy_b, gem.cauchy_c = settings.cauchy
+    gem.sellmeier_b = settings.sellmeier_b
+    gem.sellmeier_c = settings.sellmeier_c
+    gem.absorption_color = settings.absorption_color
+    gem.absorption_depth = settings.absorption_depth
+
+
+def _index_numbers(gem: Any) -> tuple[float, ...]:
+    return (gem.cauchy_b, gem.cauchy_c, *gem.sellmeier_b, *gem.sellmeier_c)
+
+
+def _keep(gem: Any) -> None:
+    """Remembers the index's numbers as the last good ones."""
+    gem.last_good = _index_numbers(gem)
+    gem.last_good_dispersion = gem.dispersion
+    gem.refusal = ""
+
+
+def on_species(gem: Any, _context: Any = None) -> None:
+    """Fills a gem's numbers from the species chosen."""
+    global _filling
+    if _filling or gem.species == CUSTOM:
+        return
+    from opal_kernels import gem as gems
+
+    _filling = True
+    try:
+        _write(gem, gems.settings_of_species(gem.species, gem.absorption_depth))
+        _keep(gem)
+    finally:
+        _filling = False
+
+
+def on_index(gem: Any, _context: Any = None) -> None:
+    """After an edit of the index: Custom if the numbers can be rendered, else the last good ones and a sentence."""
+    global _filling
+    if _filling:
+        return
+    from opal_kernels import gem as gems
+
+    if _index_numbers(gem) == tuple(gem.last_good) and gem.dispersion == gem.last_good_dispersion:
+        return  # Blender calls twice for one element of a vector
+    _filling = True
+    try:
+        if sentence := gems.refusal(settings_of(gem)):
+            good = tuple(gem.last_good)
+            gem.dispersion = gem.last_good_dispersion
+            gem.cauchy_b, gem.cauchy_c = good[:2]
+            gem.sellmeier_b, gem.sellmeier_c = good[2:5], good[5:8]
+            gem.refusal = sentence
+        else:
+            gem.species = CUSTOM
+            _keep(gem)
+    finally:
+        _filling = False
+
+
+def on_absorption(gem: Any, _context: Any = None) -> None:
+    """After an edit of the colour: the stone is no longer the species'."""
+    global _filling
+    if _filling:
+        return
+    _filling = True
+    try:
+        gem.species = CUSTOM
+        gem.refusal = ""
+    finally:
+        _filling = False

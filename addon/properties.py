@@ -1,0 +1,359 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Everything Opal saves in a file: `scene.opal`, `view_layer.opal` and `material.opal`.
+
+Lengths are metres, wavelengths nm, angles radians. The names are public: scripts and saved files depend on them.
+"""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import (
+    BoolProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
+
+from . import presets
+
+# Diamond, which a new gem starts as: Peter 1923 as in the species table, and a Cauchy formula through its F and C lines.
+_DIAMOND_B, _DIAMOND_C = (4.3356, 0.3306, 0.0), (0.011236, 0.030625, 0.0)
+_DIAMOND_CAUCHY = (2.37837, 0.013422)
+
+
+class OpalSceneProperties(bpy.types.PropertyGroup):
+    """How a scene is rendered."""
+
+    passes: IntProperty(
+        name="Passes",
+        description="How many times the whole picture is rendered anew, with new photons; the passes are averaged, so more "
+        "passes give less noise and smaller blur in caustics",
+        default=64,
+        min=1,
+        soft_max=4096,
+    )
+    samples_per_pass: IntProperty(
+        name="Samples per Pass",
+        description="How many camera paths each pixel gets in one pass",
+        default=4,
+        min=1,
+        soft_max=64,
+        max=4096,
+    )
+    photons_per_pass: IntProperty(
+        name="Photons per Pass",
+        description="How many photons each pass sends out from lamps, emissive meshes and the world; 0 leaves all light to camera paths",
+        default=200_000,
+        min=0,
+        soft_max=5_000_000,
+        max=100_000_000,
+    )
+    photons_carry: EnumProperty(
+        name="Photons Carry",
+        description="Which light the photons bring; camera paths bring the rest. All choices converge to the same picture",
+        items=(
+            ("CAUSTICS", "Caustics", "Light that reached a diffuse surface through a gem or glass or off a mirror"),
+            ("INDIRECT", "Indirect", "All light but that which comes straight from its source"),
+            ("ALL", "All", "All light, as in Jensen's photon mapping"),
+        ),
+        default="CAUSTICS",
+    )
+    gather: IntProperty(
+        name="Gather",
+        description="How many photons one estimate of light on a surface uses at most",
+        default=64,
+        min=1,
+        soft_max=500,
+        max=100_000,
+    )
+    radius: FloatProperty(
+        name="Radius",
+        description="Radius within which photons count in the first pass; 0 chooses four pixels' width at the distance of the gems",
+        default=0.0,
+        min=0.0,
+        soft_max=1.0,
+        precision=5,
+        subtype="DISTANCE",
+    )
+    radius_shrink: FloatProperty(
+        name="Radius Shrink",
+        description="How slowly the radius shrinks from pass to pass: 1 keeps it and its blur, smaller values trade blur for noise. "
+        "Two thirds is best for surfaces (Knaus and Zwicker 2011)",
+        default=2.0 / 3.0,
+        min=0.1,
+        max=1.0,
+        subtype="FACTOR",
+    )
+    max_depth: IntProperty(
+        name="Max Depth",
+        description="After how many bounces a path ends at the latest; dim paths end before, by chance and without darkening",
+        default=64,
+        min=1,
+        max=1024,
+    )
+    transparent_depth: IntProperty(
+        name="Transparent Depth",
+        description="How many transparent surfaces one ray passes at most",
+        default=64,
+        min=0,
+        max=1024,
+    )
+    wavelengths: FloatVectorProperty(
+        name="Wavelengths",
+        description="First and last wavelength of the light rendered, in nanometres; the eye sees little outside 380 to 730",
+        size=2,
+        default=(360.0, 830.0),
+        min=360.0,
+        max=830.0,
+        precision=0,
+        step=500,
+    )
+    denoise: BoolProperty(
+        name="Denoise",
+        description="Removes the remaining noise after the last pass by Intel Open Image Denoise, guided by albedo and normals",
+        default=False,
+    )
+    seed: IntProperty(
+        name="Seed",
+        description="The same seed gives the same noise on any number of threads; another seed gives an independent render",
+        default=0,
+        min=0,
+    )
+    time_limit: FloatProperty(
+        name="Time Limit",
+        description="After how many seconds the render ends with the pass then running; 0 sets no limit",
+        default=0.0,
+        min=0.0,
+        soft_max=36_000.0,
+        unit="TIME_ABSOLUTE",
+    )
+    noise_threshold: FloatProperty(
+        name="Noise Threshold",
+        description="The render ends once the estimated error of brightness, averaged over the picture and relative to it, falls "
+        "below this; 0 renders all passes",
+        default=0.0,
+        min=0.0,
+        soft_max=0.2,
+        max=1.0,
+        precision=4,
+    )
+    film_exposure: FloatProperty(
+        name="Exposure",
+        description="Factor on the brightness of every pixel",
+        default=1.0,
+        min=0.0,
+        soft_max=10.0,
+    )
+    pixel_filter: EnumProperty(
+        name="Pixel Filter",
+        description="How neighbouring samples are weighted into a pixel",
+        items=(
+            ("BOX", "Box", "The pixel alone, all of it alike"),
+            ("GAUSSIAN", "Gaussian", "A bell curve"),
+            ("BLACKMAN_HARRIS", "Blackman-Harris", "A bell curve that ends at its width; sharper, and the default of Cycles"),
+        ),
+        default="BLACKMAN_HARRIS",
+    )
+    filter_width: FloatProperty(
+        name="Width",
+        description="Width of the pixel filter in pixels",
+        default=1.5,
+        min=0.01,
+        max=10.0,
+        subtype="PIXEL",
+    )
+    clamp_direct: FloatProperty(
+        name="Clamp Direct",
+        description="Largest value that one sample of direct light may add to a pixel; 0 does not clamp, which alone is right",
+        default=0.0,
+        min=0.0,
+        soft_max=100.0,
+    )
+    clamp_indirect: FloatProperty(
+        name="Clamp Indirect",
+        description="Largest value that one sample of indirect light may add to a pixel; 0 does not clamp, which alone is right",
+        default=0.0,
+        min=0.0,
+        soft_max=100.0,
+    )
+    use_spectral_output: BoolProperty(
+        name="Spectral EXR",
+        description="Writes the radiance at each wavelength beside the picture, as a spectral OpenEXR file (layout of Fichet et al. 2021)",
+        default=False,
+    )
+    spectral_path: StringProperty(
+        name="File",
+        description="Where the spectral file is written; # stands for a digit of the frame number",
+        default="//spectral_####.exr",
+        subtype="FILE_PATH",
+    )
+    spectral_bins: IntProperty(
+        name="Bins",
+        description="How many equal parts the range of wavelengths is divided into for the spectral file",
+        default=47,
+        min=1,
+        max=1000,
+    )
+
+
+class OpalViewLayerProperties(bpy.types.PropertyGroup):
+    """Render passes that Blender has no option for."""
+
+    use_pass_albedo: BoolProperty(
+        name="Albedo", description="Keeps the share of white light that surfaces send back, for denoisers and compositing"
+    )
+    use_pass_direct: BoolProperty(
+        name="Direct", description="Keeps light that met one surface between its source and the camera"
+    )
+    use_pass_indirect: BoolProperty(
+        name="Indirect", description="Keeps light that met more than one surface, without caustics"
+    )
+    use_pass_caustics: BoolProperty(
+        name="Caustics", description="Keeps light that reached a diffuse surface through a gem or glass or off a mirror"
+    )
+
+
+class OpalGemProperties(bpy.types.PropertyGroup):
+    """A gem: a boundary whose index of refraction depends on wavelength, round an interior that absorbs."""
+
+    species: EnumProperty(
+        name="Species",
+        description="The stone; choosing one fills the settings below, editing those makes it Custom",
+        items=presets.species_items,
+        default=presets.species_number("DIAMOND"),
+        update=presets.on_species,
+    )
+    dispersion: EnumProperty(
+        name="Dispersion",
+        description="Formula of the index of refraction against wavelength",
+        items=(
+            ("CAUCHY", "Cauchy", "n = B + C / λ²: enough for most stones"),
+            ("SELLMEIER", "Sellmeier", "n² = 1 + Σ B λ² / (λ² - C): what glass makers and tables give"),
+        ),
+        default="SELLMEIER",
+        update=presets.on_index,
+    )
+    cauchy_b: FloatProperty(
+        name="B",
+        description="Cauchy's B: the index of refraction at very long wavelengths",
+        default=_DIAMOND_CAUCHY[0],
+        min=0.0,
+        soft_min=1.0,
+        soft_max=3.0,
+        precision=5,
+        step=1,
+        update=presets.on_index,
+    )
+    cauchy_c: FloatProperty(
+        name="C",
+        description="Cauchy's C in square micrometres: how strongly the index rises towards violet",
+        default=_DIAMOND_CAUCHY[1],
+        soft_min=0.0,
+        soft_max=0.1,
+        precision=6,
+        step=0.1,
+        update=presets.on_index,
+    )
+    sellmeier_b: FloatVectorProperty(
+        name="B",
+        description="Sellmeier's B: the strengths of three resonances",
+        size=3,
+        default=_DIAMOND_B,
+        precision=6,
+        update=presets.on_index,
+    )
+    sellmeier_c: FloatVectorProperty(
+        name="C",
+        description="Sellmeier's C in square micrometres: the squared wavelengths of three resonances",
+        size=3,
+        default=_DIAMOND_C,
+        precision=7,
+        update=presets.on_index,
+    )
+    fresnel: EnumProperty(
+        name="Fresnel",
+        description="How much the boundary reflects",
+        items=(
+            ("EXACT", "Exact", "Fresnel's equations"),
+            ("SCHLICK", "Schlick", "Schlick's approximation, taken on the side of the lower index"),
+        ),
+        default="EXACT",
+    )
+    absorption_color: FloatVectorProperty(
+        name="Absorption Color",
+        description="What white light becomes along the absorption depth",
+        size=3,
+        default=(1.0, 1.0, 1.0),
+        min=0.0,
+        max=1.0,
+        subtype="COLOR",
+        update=presets.on_absorption,
+    )
+    absorption_depth: FloatProperty(
+        name="Absorption Depth",
+        description="Length of stone after which white light has the absorption color",
+        default=0.005,
+        min=1e-6,
+        soft_max=1.0,
+        precision=4,
+        subtype="DISTANCE",
+        update=presets.on_absorption,
+    )
+    roughness: FloatProperty(
+        name="Roughness",
+        description="Roughness of the surface: 0 is polished, 1 is fully frosted",
+        default=0.0,
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+    )
+    priority: IntProperty(
+        name="Priority",
+        description="Where two stones or liquids overlap, the one of higher priority fills the place",
+        default=0,
+        min=-100,
+        max=100,
+    )
+    refusal: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+    last_good: FloatVectorProperty(size=8, default=(*_DIAMOND_CAUCHY, *_DIAMOND_B, *_DIAMOND_C), options={"HIDDEN"})
+    last_good_dispersion: StringProperty(default="SELLMEIER", options={"HIDDEN"})
+
+
+class OpalMaterialProperties(bpy.types.PropertyGroup):
+    """What Opal makes of a material."""
+
+    kind: EnumProperty(
+        name="Kind",
+        description="What the material is",
+        items=(
+            ("SURFACE", "Surface", "What the material's node tree says"),
+            ("GEM", "Gem", "A transparent body that splits and absorbs light: a stone, glass or a liquid"),
+        ),
+        default="SURFACE",
+    )
+    gem: PointerProperty(type=OpalGemProperties, name="Gem")
+
+
+CLASSES = (OpalSceneProperties, OpalViewLayerProperties, OpalGemProperties, OpalMaterialProperties)
+_OWNERS = (
+    (bpy.types.Scene, OpalSceneProperties),
+    (bpy.types.ViewLayer, OpalViewLayerProperties),
+    (bpy.types.Material, OpalMaterialProperties),
+)
+
+
+def register() -> None:
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    for owner, group in _OWNERS:
+        owner.opal = PointerProperty(type=group, name="Opal", description="Settings of the render engine Opal")
+
+
+def unregister() -> None:
+    for owner, _ in _OWNERS:
+        del owner.opal
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From Blender's and Opal's properties to `RenderSettings`: the frame, the region, the passes, the knobs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from opal_kernels.descriptions import Carry, Filter, Pass, RenderSettings
+
+PREVIEW_PASSES = 16
+_PREVIEW_PHOTONS = 20_000
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Pixels of the full frame, and of the part that is rendered (x0, y0, x1, y1; y up)."""
+
+    width: int
+    height: int
+    region: tuple[int, int, int, int]
+
+    @property
+    def region_size(self) -> tuple[int, int]:
+        """Width and height of the rendered part."""
+        return self.region[2] - self.region[0], self.region[3] - self.region[1]
+
+
+def frame_of(render: Any) -> Frame:
+    """The frame that Blender asks for, border and resolution percentage applied as Blender rounds them.
+
+    Parameters
+    ----------
+    render : bpy.types.RenderSettings
+    """
+    width = max(1, render.resolution_x * render.resolution_percentage // 100)
+    height = max(1, render.resolution_y * render.resolution_percentage // 100)
+    region = (0, 0, width, height)
+    if render.use_border:
+        x0, x1 = int(render.border_min_x * width), int(render.border_max_x * width)
+        y0, y1 = int(render.border_min_y * height), int(render.border_max_y * height)
+        x0, y0 = min(max(x0, 0), width - 1), min(max(y0, 0), height - 1)
+        region = (x0, y0, min(max(x1, x0 + 1), width), min(max(y1, y0 + 1), height))
+    return Frame(width, height, region)
+
+
+def threads_of(render: Any) -> int:
+    """Threads to use; 0 takes every core."""
+    return render.threads if render.threads_mode == "FIXED" else 0
+
+
+def render_settings(scene: Any, frame: Frame, passes: Sequence[Pass] = (), preview: bool = False) -> RenderSettings:
+    """The kernels' settings of a scene.
+
+    Parameters
+    ----------
+    scene : bpy.types.Scene
+        Evaluated or original.
+    frame : Frame
+    passes : sequence of Pass
+        What the film keeps beside Combined.
+    preview : bool
+        Fewer photons and no spectral film, for material previews and viewports.
+    """
+    opal = scene.opal
+    spectral = opal.use_spectral_output and not preview
+    photons = min(opal.photons_per_pass, _PREVIEW_PHOTONS) if preview else opal.photons_per_pass
+    first, last = sorted(opal.wavelengths)
+    first = min(first, 829.0)
+    return RenderSettings(
+        width=frame.width,
+        height=frame.height,
+        region=frame.region,
+        samples_per_pass=1 if preview else opal.samples_per_pass,
+        photons_per_pass=photons,
+        photons_carry=Carry[opal.photons_carry] if photons else Carry.NONE,
+        gather=opal.gather,
+        radius=opal.radius,
+        radius_shrink=opal.radius_shrink,
+        max_depth=opal.max_depth,
+        transparent_depth=opal.transparent_depth,
+        wavelength_first=first,
+        wavelength_last=max(last, first + 1.0),
+        seed=opal.seed,
+        filter=Filter[opal.pixel_filter],
+        filter_width=opal.filter_width,
+        exposure=opal.film_exposure,
+        transparent_film=scene.render.film_transparent,
+        clamp_direct=opal.clamp_direct,
+        clamp_indirect=opal.clamp_indirect,
+        motion_blur=scene.render.use_motion_blur and not preview,
+        spectral_bins=opal.spectral_bins if spectral else 0,
+        threads=threads_of(scene.render),
+        passes=(*passes, Pass.SPECTRAL) if spectral else tuple(passes),
+    )

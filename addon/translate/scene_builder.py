@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An evaluated depsgraph as a committed kernel scene.
+
+Everything Blender owns is read first (a change of frame makes it invalid), then, where there is motion blur, once more at
+the end of the shutter; only then does the kernels' scene get its meshes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from opal_kernels.descriptions import Attribute, Camera, Light
+from opal_kernels.scene import Scene
+
+from ..report import Report
+from .instances import Group, collect
+from .lights import LightLinks, light_from_object
+from .materials import Materials
+from .meshes import MeshArrays, MeshNeeds, read_mesh
+from .node_context import NodeContext
+from .world import world_from_scene
+
+
+class Stopped(Exception):
+    """The person stopped the render during the translation."""
+
+
+@dataclass
+class Snapshot:
+    """What was read from Blender at one time, without references into it."""
+
+    groups: list[Group] = field(default_factory=list)
+    materials: list[list[int]] = field(default_factory=list)  # kernel numbers, a list a group
+    meshes: dict[int, MeshArrays | None] = field(default_factory=dict)  # by the address the mesh had
+    mesh_of_group: list[int] = field(default_factory=list)
+    lights: list[tuple[Light, str]] = field(default_factory=list)
+
+
+def _ignore_stage(_text: str) -> None:
+    pass
+
+
+class SceneBuilder:
+    """Builds a kernel scene from a depsgraph.
+
+    Parameters
+    ----------
+    report : Report
+        Told what could not be kept.
+    threads : int
+        0 takes every core.
+    stage : callable
+        Called with a few words before each step; may raise `Stopped`.
+    """
+
+    def __init__(self, report: Report, threads: int = 0, stage: Callable[[str], None] = _ignore_stage) -> None:
+        self._report, self._stage = report, stage
+        self.scene = Scene(threads=threads)
+        self._context = NodeContext(self.scene, report)
+        self._materials = Materials(self.scene, self._context, report)
+
+    def read(self, depsgraph: Any) -> Snapshot:
+        """Reads everything that is seen: instances, lamps, world, materials and meshes."""
+        self._stage("Reading objects")
+        snapshot = Snapshot()
+        self._context.begin(depsgraph)
+        links = LightLinks((o for o in depsgraph.objects if o.type == "LIGHT"), self._report.add)
+
+        originals: list[Any] = []
+
+        def on_light(obj: Any, matrix: np.ndarray) -> None:
+            light = light_from_object(obj, matrix=matrix, context=self._context, report=self._report.add)
+            if light is not None:
+                snapshot.lights.append((light, obj.original.name_full))
+                originals.append(obj.original)
+
+        visible = collect(depsgraph, on_light, links.group)
+        for (light, _), lamp in zip(snapshot.lights, originals, strict=True):
+            light.receivers = links.receivers(lamp)
+        for name, sentence in visible.problems:
+            self._report.add(name, sentence)
+
+        self._stage("Reading materials")
+        world, problems = world_from_scene(depsgraph.scene_eval.world, self._context)
+        self._context.note(problems)
+        if world is not None:
+            self.scene.set_world(world)
+        for group in visible.groups:
+            snapshot.materials.append([self._materials.number(material) for material in group.materials])
+
+        needs = self._context.mesh_needs()
+        for count, group in enumerate(visible.groups):
+            self._stage(f"Reading meshes, {count + 1} of {len(visible.groups)}")
+            snapshot.mesh_of_group.append(self._read_mesh(group, needs, snapshot))
+        snapshot.groups = visible.groups
+        return snapshot
+
+    def _read_mesh(self, group: Group, needs: MeshNeeds, snapshot: Snapshot) -> int:
+        key = group.mesh.as_pointer()
+        if key not in snapshot.meshes:
+            arrays = snapshot.meshes[key] = read_mesh(group.mesh, needs)
+            for sentence in arrays.problems if arrays is not None else ():
+                self._report.add(group.name, sentence)
+        group.mesh = None
+        return key
+
+    def read_end(self, depsgraph: Any, snapshot: Snapshot) -> None:
+        """Reads once more what moves or deforms, at the end of the shutter; what cannot be matched stands still."""
+        self._stage("Reading motion")
+        visible = collect(depsgraph)
+        by_rows = {(group.name, len(group.rows), int(group.rows[0])): group for group in visible.groups}
+        for group, key in zip(snapshot.groups, snapshot.mesh_of_group, strict=True):
+            later = by_rows.get((group.name, len(group.rows), int(group.rows[0])))
+            if later is None or not np.array_equal(later.rows, group.rows):
+                continue
+            group.transforms_end = later.transforms
+            arrays = snapshot.meshes[key]
+            if arrays is None or arrays.positions_end is not None:
+                continue
+            positions = read_positions(later.mesh)
+            if positions.shape == arrays.positions.shape and not np.array_equal(positions, arrays.positions):
+                arrays.positions_end = positions
+
+    def finish(self, snapshot: Snapshot, camera: Camera | None = None) -> Scene:
+        """Hands everything to the kernels and commits."""
+        self._stage("Building the scene")
+        numbers: dict[int, int] = {}
+        for group, materials, key in zip(snapshot.groups, snapshot.materials, snapshot.mesh_of_group, strict=True):
+            arrays = snapshot.meshes[key]
+            if arrays is None:
+                continue
+            if key not in numbers:
+                numbers[key] = self._add_mesh(arrays, group.name)
+            self.scene.add_instances(
+                numbers[key],
+                group.transforms,
+                materials,
+                transforms_end=group.transforms_end,
+                visibility=group.visibility,
+                object_info=group.object_info,
+                holdout=group.holdout,
+                light_group=group.receiver_set,
+            )
+        self._add_lights(snapshot.lights)
+        if camera is not None:
+            self.scene.set_camera(camera)
+        self.scene.commit()
+        return self.scene
+
+    def _add_mesh(self, arrays: MeshArrays, name: str) -> int:
+        from opal_kernels import binding
+
+        number, dropped = binding.scene_add_mesh(
+            self.scene.handle,
+            arrays.positions,
+            arrays.triangles,
+            positions_end=arrays.positions_end,
+            corner_normals=arrays.corner_normals,
+            corner_tangents=arrays.corner_tangents,
+            material_slots=arrays.material_slots,
+            generated=arrays.generated,
+            attributes=[Attribute(*attribute) for attribute in arrays.attributes],
+        )
+        if dropped:
+            self._report.add(name, f"{dropped} triangles have corners that are not finite and are left out")
+        return number
+
+    def _add_lights(self, lights: Iterable[tuple[Light, str]]) -> None:
+        from opal_kernels import binding
+
+        for light, name in lights:
+            try:
+                self.scene.add_light(light)
+            except binding.OpalError as error:
+                self._report.add(name, f"the lamp is left out: {error}")
+
+
+def read_positions(mesh: Any) -> np.ndarray:
+    """Vertices of an evaluated mesh, (n, 3) float32."""
+    flat = np.empty(len(mesh.vertices) * 3, np.float32)
+    if len(flat):
+        mesh.attributes["position"].data.foreach_get("vector", flat)
+    return flat.reshape(-1, 3)

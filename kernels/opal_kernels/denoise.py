@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Denoising by the Open Image Denoise 2 that Blender's build carries, through its C interface.
+
+The filter is "RT": a network for path-traced pictures, guided by albedo and normal. Functions and constants after
+https://www.openimagedenoise.org/documentation.html (version 2).
+"""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+from ctypes import c_bool, c_char_p, c_int, c_size_t, c_void_p
+from typing import Any
+
+import numpy as np
+
+from . import libraries
+from .binding import OpalError, as_array
+
+_DEVICE_CPU = 1
+_FORMAT_FLOAT3 = 3
+_SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
+    "oidnNewDevice": (c_void_p, [c_int]),
+    "oidnCommitDevice": (None, [c_void_p]),
+    "oidnReleaseDevice": (None, [c_void_p]),
+    "oidnGetDeviceError": (c_int, [c_void_p, ctypes.POINTER(c_char_p)]),
+    "oidnSetDeviceInt": (None, [c_void_p, c_char_p, c_int]),
+    "oidnNewFilter": (c_void_p, [c_void_p, c_char_p]),
+    "oidnSetSharedFilterImage": (
+        None,
+        [c_void_p, c_char_p, c_void_p, c_int, c_size_t, c_size_t, c_size_t, c_size_t, c_size_t],
+    ),
+    "oidnSetFilterBool": (None, [c_void_p, c_char_p, c_bool]),
+    "oidnCommitFilter": (None, [c_void_p]),
+    "oidnExecuteFilter": (None, [c_void_p]),
+    "oidnReleaseFilter": (None, [c_void_p]),
+}
+
+_library: ctypes.CDLL | None = None
+_reason: str | None = None
+_lock = threading.Lock()
+
+
+def unavailable() -> str:
+    """Why nothing can be denoised here, in one sentence; empty where it can."""
+    global _library, _reason
+    with _lock:
+        if _reason is None:
+            _library, _reason = _open()
+        return _reason
+
+
+def _open() -> tuple[ctypes.CDLL | None, str]:
+    path = libraries.open_image_denoise()
+    if path is None:
+        return None, "This build of Blender carries no Open Image Denoise."
+    try:
+        opened = ctypes.CDLL(path)
+        for name, (result, arguments) in _SIGNATURES.items():
+            function = getattr(opened, name)
+            function.restype, function.argtypes = result, arguments
+    except (OSError, AttributeError) as error:
+        return None, f"Open Image Denoise at {path} cannot be used: {error}."
+    return opened, ""
+
+
+def denoise(color: np.ndarray, albedo: np.ndarray, normal: np.ndarray, threads: int = 0) -> np.ndarray:
+    """A picture without its noise.
+
+    Parameters
+    ----------
+    color : ndarray
+        (height, width, 3 or 4) linear; a fourth channel, alpha, is kept as it is.
+    albedo, normal : ndarray
+        (height, width, 3) guides; normals in world space, -1 to 1.
+    threads : int
+        0 takes every core.
+
+    Returns
+    -------
+    ndarray
+        float32 of the shape of ``color``.
+
+    Raises
+    ------
+    OpalError
+        If there is no Open Image Denoise, or it fails.
+    """
+    if reason := unavailable():
+        raise OpalError(reason)
+    color = as_array("color", color, np.float32, (None, None, None))
+    height, width, _ = color.shape
+    images = {
+        b"color": np.ascontiguousarray(color[..., :3]),
+        b"albedo": as_array("albedo", albedo, np.float32, (height, width, 3)),
+        b"normal": as_array("normal", normal, np.float32, (height, width, 3)),
+        b"output": np.empty((height, width, 3), np.float32),
+    }
+    out = color.copy()
+    _run(images, width, height, threads)
+    out[..., :3] = images[b"output"]
+    return out
+
+
+def _run(images: dict[bytes, np.ndarray], width: int, height: int, threads: int) -> None:
+    api = _library
+    assert api is not None
+    device = api.oidnNewDevice(_DEVICE_CPU)
+    if not device:
+        raise OpalError("Open Image Denoise has no device for this processor.")
+    try:
+        if threads:
+            api.oidnSetDeviceInt(device, b"numThreads", threads)
+        api.oidnCommitDevice(device)
+        filter_handle = api.oidnNewFilter(device, b"RT")
+        if filter_handle:
+            for name, pixels in images.items():
+                api.oidnSetSharedFilterImage(
+                    filter_handle, name, pixels.ctypes.data, _FORMAT_FLOAT3, width, height, 0, 0, 0
+                )
+            api.oidnSetFilterBool(filter_handle, b"hdr", True)
+            api.oidnCommitFilter(filter_handle)
+            api.oidnExecuteFilter(filter_handle)
+            api.oidnReleaseFilter(filter_handle)
+        message = c_char_p()
+        if api.oidnGetDeviceError(device, ctypes.byref(message)):
+            raise OpalError(f"Open Image Denoise failed: {(message.value or b'').decode('utf-8', 'replace')}.")
+    finally:
+        api.oidnReleaseDevice(device)
