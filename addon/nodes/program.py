@@ -230,7 +230,9 @@ class ProgramBuilder:
             row[0], row[1] = c.op, c.mode
             row[2] = n_constants + registers[number] if number in registers else -1
             row[3 : 3 + len(c.inputs)] = [operand(i) for i in c.inputs]
-        rows = np.array(constants, np.float32).reshape(n_constants, 4)
+        with np.errstate(over="ignore"):
+            rows = np.nan_to_num(np.array(constants, np.float64).reshape(n_constants, 4)).astype(np.float32)
+        rows = np.nan_to_num(rows)
         return code, rows, n_constants + n_variables
 
     def _live(self) -> list[int]:
