@@ -124,7 +124,7 @@ def collect(
         is_copy = instance.is_instance
         source = instance.instance_object if is_copy else obj
         parent = instance.parent if is_copy else None
-        mesh = obj.data
+        mesh = obj.to_mesh() if obj.mode == "EDIT" and not is_copy else obj.data
         identity = (
             source.as_pointer() if source is not None else 0,
             mesh.as_pointer(),
