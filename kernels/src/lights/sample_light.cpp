@@ -46,6 +46,19 @@ struct Weights {
     } else {
       for (const LightBounds &b : t.near_bounds) total += values[count++] = importance(b, r);
     }
+    if (t.far.size() <= kFewLights) share_out();
+  }
+
+ private:
+  // What a source brings is an upper estimate: the strongest may be hidden by something. A part of the samples is shared
+  // evenly among all that can bring anything, so that no source is left to rare and heavy samples.
+  void share_out() {
+    constexpr float kShared = 0.3f;
+    size_t n = 0;
+    for (size_t i = 0; i < count; ++i) n += values[i] > 0;
+    if (n < 2 || !std::isfinite(total)) return;
+    for (size_t i = 0; i < count; ++i)
+      if (values[i] > 0) values[i] = (1 - kShared) * values[i] + kShared * total / float(n);
   }
 };
 
@@ -96,8 +109,8 @@ float source_probability(const LightTables &t, const Receiver &r, const SourceId
   const Weights w(t, r);
   if (!(w.total > 0) || !std::isfinite(w.total)) return 0;
   if (id.kind == SourceKind::World || (id.kind == SourceKind::Lamp && t.lamps[id.index].type == OPAL_LIGHT_SUN)) {
-    for (const SourceId &f : t.far)
-      if (same(f, id)) return far_importance(t, f, r) / w.total;
+    for (size_t i = 0; i < t.far.size(); ++i)
+      if (same(t.far[i], id)) return (t.far.size() <= kFewLights ? w.values[i] : far_importance(t, id, r)) / w.total;
     return 0;
   }
   const std::vector<uint32_t> &index = id.kind == SourceKind::Lamp ? t.near_of_lamp : t.near_of_triangle;
