@@ -160,6 +160,23 @@ Spectrum eval_rgb(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi,
   return uplift(f, w);
 }
 
+// Lambert's lobe alone, the commonest surface: the cosine cancels and nothing needs to be evaluated again.
+bool is_lambert(const ClosureSet &set) { return set.count == 1 && set.lobes[0].kind == LobeKind::Diffuse; }
+
+bool sample_lambert(const Lobe &lobe, const ShadingPoint &sp, const Wavelengths &w, Transport transport, Vec2 u, BsdfSample &out) {
+  const Vec3 local = sample_cosine(u);
+  out.wi = Frame::from_z(lobe.normal).to_world(local);
+  if (!(local.z > 0 && dot(sp.ng, out.wi) > 0)) return false;
+  float scale = bump_shadowing(lobe.normal, sp.ns, transport == Transport::Flux ? sp.wo : out.wi, true);
+  if (transport == Transport::Flux) scale *= adjoint(lobe, sp, out.wi, false);
+  if (!(scale > 0)) return false;
+  out.weight = uplift(lobe.weight * scale, w);
+  out.pdf = Spectrum(local.z * kInvPi);
+  out.scattering = kScatterReflect | kScatterDiffuse;
+  out.eta = out.roughness = 1;
+  return true;
+}
+
 }  // namespace
 
 Lobe *ClosureSet::add(LobeKind kind, const Vec3 &weight, const Vec3 &normal) {
@@ -177,7 +194,8 @@ Lobe *ClosureSet::add(LobeKind kind, const Vec3 &weight, const Vec3 &normal) {
 bool bsdf_sample(const ClosureSet &set, const ShadingPoint &sp, const Wavelengths &w, Transport transport, float lobe_u, Vec2 u,
                  BsdfSample &out) {
   if (is_gem(set)) return sample_gem(set, sp, transport, lobe_u, u, out);
-  const float total = set.count == 1 ? set.lobes[0].sample_weight : total_sample_weight(set);
+  if (is_lambert(set)) return sample_lambert(set.lobes[0], sp, w, transport, u, out);
+  const float total = total_sample_weight(set);
   if (!(total > 0)) return false;
   const Lobe *lobe = pick_lobe(set, total, lobe_u);
   LobeSample sample;

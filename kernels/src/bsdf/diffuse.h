@@ -6,6 +6,7 @@
 #pragma once
 
 #include "bsdf/closure.h"
+#include "bsdf/turn.h"
 
 namespace opal {
 
@@ -15,9 +16,10 @@ inline Vec3 sample_cosine(Vec2 u) {
   if (a == 0 && b == 0) return {0, 0, 1};
   const bool wide = std::abs(a) > std::abs(b);
   const float r = wide ? a : b;
-  const float phi = wide ? kPi / 4 * (b / a) : kPi / 2 - kPi / 4 * (a / b);
-  const float x = r * std::cos(phi), y = r * std::sin(phi);
-  return {x, y, safe_sqrt(1 - x * x - y * y)};
+  float sine, cosine;
+  sine_cosine_near_zero(0.5f * (wide ? b / a : a / b), sine, cosine);
+  const float x = r * (wide ? cosine : sine), y = r * (wide ? sine : cosine);
+  return {x, y, safe_sqrt(1 - r * r)};
 }
 
 // Directional albedo of the B term: pi B G(cos).

@@ -7,6 +7,7 @@
 // Spherical Caps".
 #pragma once
 
+#include "bsdf/turn.h"
 #include "core/vec.h"
 
 namespace opal {
@@ -27,10 +28,11 @@ struct Ggx {
   // A facet normal with density density(m) max(0, w.m) / (w.z (1 + lambda(w))), w above the surface.
   Vec3 sample_visible(const Vec3 &w, Vec2 u) const {
     const Vec3 v = normalize(Vec3{alpha_x * w.x, alpha_y * w.y, w.z});
-    const float phi = 2 * kPi * u.x;
+    float sine, cosine;
+    sine_cosine_of_turn(u.x, sine, cosine);
     const float z = (1 - u.y) * (1 + v.z) - v.z;
     const float r = safe_sqrt(1 - sqr(z));
-    const Vec3 h = Vec3{r * std::cos(phi), r * std::sin(phi), z} + v;
+    const Vec3 h = Vec3{r * cosine, r * sine, z} + v;
     return normalize(Vec3{alpha_x * h.x, alpha_y * h.y, std::max(h.z, 1e-12f)});
   }
 };
