@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import math
 
+import bpy
+
 from . import operations as ops
 from .compiler import NodeView
 from .inputs import coordinate, uv
@@ -103,7 +105,8 @@ def noise(n: NodeView) -> dict[str, Value]:
 def voronoi(n: NodeView) -> dict[str, Value]:
     node = n.node
     names = ("W", "Scale", "Detail", "Roughness", "Lacunarity", "Smoothness", "Exponent", "Randomness")
-    settings = (int(node.voronoi_dimensions[0]), ops.VORONOI_METRIC[node.distance], int(node.normalize))
+    old_hash = int(bpy.app.version < (5, 0))
+    settings = (int(node.voronoi_dimensions[0]), ops.VORONOI_METRIC[node.distance], int(node.normalize), old_hash)
     outputs = n.emit_all(Op.VORONOI, ops.VORONOI[node.feature], position(n), *map(n.value, names), *settings)
     distance, color, place, radius = outputs
     return {"Distance": distance, "Color": color, "Position": place, "W": n.builder.component(place, 3), "Radius": radius}

@@ -63,8 +63,8 @@ typedef enum opal_op {
   OPAL_OP_NOISE = 62,       /* vector, w, scale, detail, roughness, lacunarity, offset, gain, distortion, dimensions= (1..4),
                                flags= (1 normalize, 2 color wanted); mode OPAL_NOISE_* -> factor, color */
   OPAL_OP_VORONOI = 63,     /* vector, w, scale, detail, roughness, lacunarity, smoothness, exponent, randomness, dimensions=,
-                               metric= (0 Euclidean, 1 Manhattan, 2 Chebychev, 3 Minkowski), normalize=; mode OPAL_VORONOI_*
-                               -> distance, color, position (w in the fourth lane), radius */
+                               metric= (0 Euclidean, 1 Manhattan, 2 Chebychev, 3 Minkowski), normalize=, hash= (0 PCG: Blender 5, 1 Jenkins:
+                               Blender 4); mode OPAL_VORONOI_* -> distance, color, position (w in the fourth lane), radius */
   OPAL_OP_WAVE = 64,        /* vector, scale, distortion, detail, detail_scale, detail_roughness, phase, rings=, direction= (0 X, 1 Y,
                                2 Z, 3 diagonal or spherical), profile= (0 sine, 1 saw, 2 triangle) -> factor */
   OPAL_OP_MAGIC = 65,       /* vector, scale, distortion, depth= (0..10) -> color, factor */

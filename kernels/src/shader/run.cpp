@@ -188,7 +188,7 @@ void noise(const Run &run, const opal_instruction &c) {
 
 void voronoi(const Run &run, const opal_instruction &c) {
   const auto in = [&](int i) { return finite(run.r.scalar(c.in[i])); };
-  const Voronoi settings{c.mode, c.in[10], in(3), in(4), in(5), in(6), in(7), in(8), c.in[11] != 0};
+  const Voronoi settings{c.mode, c.in[10], in(3), in(4), in(5), in(6), in(7), in(8), c.in[11] != 0, c.in[12] == 1};
   const VoronoiSample s = voronoi_texture(settings, c.in[9], run.r.xyz(c.in[0]), in(1), in(2));
   run.r.write(c.out) = number(s.distance);
   run.r.write(c.out + 1) = vector(s.color, 1);

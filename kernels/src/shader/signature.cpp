@@ -44,7 +44,7 @@ constexpr std::array<Signature, OPAL_OP_COUNT> table() {
   t[OPAL_OP_IMAGE] = {"Image", 1, "rmiiioci", OPAL_PROJECT_COUNT, false, true};
   t[OPAL_OP_CHECKER] = {"Checker", 2, "rrrr"};
   t[OPAL_OP_NOISE] = {"Noise", 2, "rrrrrrrrrii", OPAL_NOISE_COUNT};
-  t[OPAL_OP_VORONOI] = {"Voronoi", 4, "rrrrrrrrriii", OPAL_VORONOI_COUNT};
+  t[OPAL_OP_VORONOI] = {"Voronoi", 4, "rrrrrrrrriiii", OPAL_VORONOI_COUNT};
   t[OPAL_OP_WAVE] = {"Wave", 1, "rrrrrrriii"};
   t[OPAL_OP_MAGIC] = {"Magic", 2, "rrri"};
   t[OPAL_OP_BRICK] = {"Brick", 2, "rrrrrrrrrrc"};

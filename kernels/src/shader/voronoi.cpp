@@ -50,31 +50,49 @@ float distance(const Voronoi &s, const Point<N> &a, const Point<N> &b) {
 
 constexpr float kPcgScale = 1.0f / float(0x7FFFFFFFu);
 
+template <int N>
+Point<N> as_point(const Cell<N> &c) {
+  Point<N> p;
+  for (int i = 0; i < N; ++i) p.v[i] = float(c.v[i]);
+  return p;
+}
+
 // The random point of a cell, relative to the cell's corner, before `randomness` scales it.
 template <int N>
-Point<N> random_point(const Cell<N> &c) {
-  Point<N> p;
-  if constexpr (N == 1) {
-    p.v[0] = hash_floats({float(c.v[0])});
-  } else {
+Point<N> random_point(const Voronoi &s, const Cell<N> &c) {
+  Point<N> p = as_point(c);
+  if constexpr (N == 1) return {{hash_floats({p.v[0]})}};
+  if (!s.jenkins) {
     int32_t k[N];
     std::copy_n(c.v, N, k);
-    pcg<N>(k);
+    if constexpr (N > 1) pcg<N>(k);
     for (int i = 0; i < N; ++i) p.v[i] = float(k[i]) * kPcgScale;
+    return p;
   }
+  const float *q = p.v;
+  if constexpr (N == 2) return {{hash_floats({q[0], q[1]}), hash_floats({q[0], q[1], 1.0f})}};
+  if constexpr (N == 3)
+    return {{hash_floats({q[0], q[1], q[2]}), hash_floats({q[0], q[1], q[2], 1.0f}), hash_floats({q[0], q[1], q[2], 2.0f})}};
+  if constexpr (N == 4)
+    return {{hash_floats({q[0], q[1], q[2], q[3]}), hash_floats({q[3], q[0], q[1], q[2]}), hash_floats({q[2], q[3], q[0], q[1]}),
+             hash_floats({q[1], q[2], q[3], q[0]})}};
   return p;
 }
 
 template <int N>
-Vec3 random_color(const Cell<N> &c) {
-  if constexpr (N == 1) {
-    const float k = float(c.v[0]);
-    return {hash_floats({k}), hash_floats({k, 1.0f}), hash_floats({k, 2.0f})};
-  } else if constexpr (N == 4) {
-    const Point<4> p = random_point(c);
+Vec3 random_color(const Voronoi &s, const Cell<N> &c) {
+  const Point<N> k = as_point(c);
+  const float *q = k.v;
+  if constexpr (N == 1) return {hash_floats({q[0]}), hash_floats({q[0], 1.0f}), hash_floats({q[0], 2.0f})};
+  if constexpr (N == 2)
+    if (s.jenkins) return {hash_floats({q[0], q[1]}), hash_floats({q[0], q[1], 1.0f}), hash_floats({q[0], q[1], 2.0f})};
+  if constexpr (N == 4) {
+    if (s.jenkins)
+      return {hash_floats({q[0], q[1], q[2], q[3]}), hash_floats({q[2], q[0], q[3], q[1]}), hash_floats({q[3], q[2], q[1], q[0]})};
+    const Point<4> p = random_point(s, c);
     return {p.v[0], p.v[1], p.v[2]};
   } else {
-    const Point<3> p = random_point<3>({{c.v[0], c.v[1], N == 3 ? c.v[N - 1] : 0}});
+    const Point<3> p = random_point<3>(s, {{c.v[0], N > 1 ? c.v[N > 1] : 0, N == 3 ? c.v[N - 1] : 0}});
     return {p.v[0], p.v[1], p.v[2]};
   }
 }
@@ -89,7 +107,7 @@ void around(const Voronoi &s, const Cell<N> &home, int reach, F f) {
     Cell<N> cell;
     Point<N> point;
     for (int i = 0; i < N; ++i) cell.v[i] = int32_t(uint32_t(home.v[i]) + uint32_t(offset.v[i])), point.v[i] = float(offset.v[i]);
-    f(cell, point + random_point(cell) * s.randomness);
+    f(cell, point + random_point(s, cell) * s.randomness);
     int i = 0;
     while (i < N && ++offset.v[i] > reach) offset.v[i++] = -reach;
     if (i == N) return;
@@ -132,7 +150,7 @@ Octave<N> nearest(const Voronoi &s, const Place<N> &at, int rank) {
       d[1] = distance_here, cell[1] = c, point[1] = p;
     }
   });
-  return {d[rank], random_color(cell[rank]), point[rank] + at.corner};
+  return {d[rank], random_color(s, cell[rank]), point[rank] + at.corner};
 }
 
 template <int N>
@@ -146,7 +164,7 @@ Octave<N> smooth_nearest(const Voronoi &s, const Place<N> &at) {
     float correction = s.smoothness * h * (1 - h);
     o.distance = lerp(o.distance, d, h) - correction;
     correction /= 1 + 3 * s.smoothness;
-    o.color = lerp(o.color, random_color(c), h) - Vec3{correction, correction, correction};
+    o.color = lerp(o.color, random_color(s, c), h) - Vec3{correction, correction, correction};
     o.position = mix(o.position, p, h);
     for (float &x : o.position.v) x -= correction;
   });
