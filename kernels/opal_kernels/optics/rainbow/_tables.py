@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From a theory to a table: sizes averaged, the sun folded in, wavelengths shared among threads.
+
+A theory gives one drop's phase function at one wavelength; the sum over sizes weighs each with its number and cross-section.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor, as_completed
+
+import numpy as np
+
+from opal_kernels.optics.rainbow import THEORIES, Cancelled, _mie_binding, airy, background, descartes, droplet, drops, geometric, mie, sun, water
+
+_DEFAULT_SIZES = {"MIE": 48, "AIRY": 21, "DROPLET": 21, "DESCARTES": 1, "DESCARTES_SAMPLED": 1}
+_RAY_GRID = 36001  # 0.005 degrees
+_NEGLIGIBLE = 1e-7  # share of the cross-section under which a size is left out
+
+Theory = Callable[[np.ndarray, bool], np.ndarray]  # angles, whether they are equally spaced from 0 to pi -> (2, n_angles)
+
+
+def build(
+    theory: str,
+    radius_um: float,
+    wavelengths_nm: np.ndarray,
+    angles_rad: np.ndarray,
+    spread: float,
+    sun_radius_rad: float,
+    distribution: str,
+    sizes: int | None,
+    celsius: float,
+    salinity: float,
+    index: np.ndarray | None,
+    diffraction: bool,
+    flattening: float,
+    sun_elevation_rad: float,
+    clock_rad: float,
+    threads: int,
+    progress: Callable[[float], bool | None] | None,
+) -> np.ndarray:
+    """`rainbow.phase_function` with every argument given."""
+    if theory not in THEORIES:
+        raise ValueError(f"no rainbow theory {theory!r}; there are {', '.join(THEORIES)}")
+    nm = np.atleast_1d(np.asarray(wavelengths_nm, float))
+    angles = np.atleast_1d(np.asarray(angles_rad, float))
+    if nm.ndim != 1 or nm.size == 0 or not ((nm >= 200) & (nm <= 1100)).all():
+        raise ValueError("wavelengths must lie between 200 and 1100 nm, and there must be one")
+    if angles.ndim != 1 or angles.size == 0 or not ((angles >= 0) & (angles <= np.pi + 1e-9)).all():
+        raise ValueError("scattering angles must lie between 0 and pi, and there must be one")
+    n = water.index(nm, celsius, salinity) if index is None else np.broadcast_to(np.asarray(index, float), nm.shape)
+    if not (np.isfinite(n) & (n > 1)).all():
+        raise ValueError("the index of a drop relative to air must be finite and above 1")
+    radii, weights = drops.quadrature(radius_um, spread, distribution, sizes or _DEFAULT_SIZES[theory])
+    area = weights * radii**2
+    kept = area > _NEGLIGIBLE * area.sum()
+    radii, weights = radii[kept], weights[kept]
+    shape = droplet.Shape(flattening, sun_elevation_rad, clock_rad)
+    sun.smooth(np.zeros(3), sun_radius_rad)  # refuses an impossible sun before the work
+
+    def one(i: int) -> np.ndarray:
+        evaluate = _theory(theory, radii, weights, float(n[i]), float(nm[i]), diffraction, shape)
+        return _seen(evaluate, angles, sun_radius_rad, _grid(theory, radii, nm[i]))
+
+    result = np.empty((2, nm.size, angles.size))
+    workers = threads if threads > 0 else os.cpu_count() or 1
+    with ThreadPoolExecutor(min(workers, nm.size)) as pool:
+        futures = {pool.submit(one, i): i for i in range(nm.size)}
+        try:
+            for done, future in enumerate(as_completed(futures), 1):
+                result[:, futures[future]] = future.result()
+                if progress is not None and progress(done / nm.size) is False:
+                    raise Cancelled("the table was cancelled")
+        finally:
+            for future in futures:
+                future.cancel()
+    return result
+
+
+def _grid(theory: str, radii: np.ndarray, nm: float) -> int:
+    """How many angles resolve a theory's finest ripple; intensities have twice the degree of amplitudes."""
+    if theory != "MIE":
+        return _RAY_GRID
+    return max(3601, 2 * int(1.2 * _mie_binding.terms(2000 * np.pi * radii.max() / nm)) + 1)
+
+
+def _seen(evaluate: Theory, angles: np.ndarray, sun_radius: float, grid: int) -> np.ndarray:
+    """A theory at the wanted angles, under a point or under a disc."""
+    uniform = angles.size >= 2 and np.allclose(angles, np.linspace(0, np.pi, angles.size), rtol=0, atol=1e-9)
+    if sun_radius == 0:
+        return evaluate(angles, uniform)
+    if uniform and angles.size >= grid:
+        return np.clip(sun.smooth(evaluate(angles, True), sun_radius), 0, None)
+    fine = np.linspace(0, np.pi, grid)
+    smoothed = np.clip(sun.smooth(evaluate(fine, True), sun_radius), 0, None)
+    return np.array([np.interp(angles, fine, row) for row in smoothed])
+
+
+def _theory(
+    name: str, radii: np.ndarray, weights: np.ndarray, n: float, nm: float, diffraction: bool, shape: droplet.Shape
+) -> Theory:
+    sizes = 2000 * np.pi * radii / nm
+    share = weights * radii**2 / (weights * radii**2).sum()  # of the geometric cross-section
+    if name == "MIE":
+        return lambda angles, uniform: _mie(angles, uniform, n, sizes, weights, share, diffraction)
+    if name == "AIRY":
+        scattered = airy.Drop(n).scattered
+    elif name == "DROPLET":
+        scattered = droplet.Drop(n, shape, nm).scattered
+    else:
+        table = descartes.solved_table(n) if name == "DESCARTES" else descartes.sampled_table(n)
+
+        def scattered(angles, *_):
+            return background.at(angles, table)
+
+    def evaluate(angles: np.ndarray, uniform: bool) -> np.ndarray:
+        light = scattered(angles, sizes, share)
+        return background.with_diffraction(angles, light, sizes, share) if diffraction else light
+
+    return evaluate
+
+
+def _mie(
+    angles: np.ndarray, uniform: bool, n: float, sizes: np.ndarray, weights: np.ndarray, share: np.ndarray, diffraction: bool
+) -> np.ndarray:
+    total, area = np.zeros((2, angles.size)), 0.0
+    for x, weight in zip(sizes, weights, strict=True):
+        if uniform:
+            total += weight * mie.uniform_intensities(n, x, angles.size, threads=1)
+        else:
+            total += weight * np.abs(np.array(mie.amplitudes(n, x, angles, threads=1))) ** 2
+        area += weight * np.pi * x * x * mie.efficiencies(n, x)[1]
+    phase = total / area
+    if not diffraction:  # its light is half of all; what interferes with the light passed through is cut at zero
+        lobe = sum(part * geometric.diffraction(angles, x) for part, x in zip(share, sizes, strict=True))
+        phase = np.clip(2 * phase - lobe, 0, None)
+    return phase

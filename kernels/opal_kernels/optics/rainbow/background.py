@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a drop does besides its two bows: reflection outside, light passed through, higher orders, and the diffraction lobe.
+
+The ray theories and Airy's add this to their bows, so that the dark band and the sky stand right beside them. Densities are per
+unit of light on the drop (integral 1 over all orders for each polarisation), tabulated on `EDGES` and linear between centres.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from opal_kernels.optics.rainbow import geometric
+
+BOWS = (1, 2)
+HIGHEST_ORDER = 7
+EDGES = np.linspace(0, np.pi, 3601)  # 0.05 degrees
+CENTRES = (EDGES[1:] + EDGES[:-1]) / 2
+SOLID_ANGLES = 2 * np.pi * (np.cos(EDGES[:-1]) - np.cos(EDGES[1:]))
+_RAYS = {-1: 2000, 0: 2000, 1: 8000, 2: 8000}
+
+
+def order_density(n: float, k: int) -> np.ndarray:
+    """Return the density (2, 3600) of one order at `CENTRES`, 1/sr per unit of light on the drop."""
+    return geometric.energy(n, k, EDGES, _RAYS.get(k, 3000)) / SOLID_ANGLES
+
+
+def orders(n: float) -> dict[int, np.ndarray]:
+    """Return `order_density` of every order from -1 to `HIGHEST_ORDER`."""
+    return {k: order_density(n, k) for k in range(-1, HIGHEST_ORDER + 1)}
+
+
+def closed(densities: dict[int, np.ndarray], bows: np.ndarray) -> np.ndarray:
+    """Return the sum of everything but the bows, with the light that passes through scaled so that all integrates to 1.
+
+    Parameters
+    ----------
+    densities : dict
+        As `orders` returns.
+    bows : array (2, 3600)
+        What stands for orders 1 and 2, same units.
+
+    Returns
+    -------
+    array (2, 3600)
+        Background and bows together integrate to 1 for each polarisation. The correction is a few per cent of the forward light.
+    """
+    rest = sum(density for k, density in densities.items() if k not in BOWS and k != 0)
+    missing = 1 - ((rest + bows) * SOLID_ANGLES).sum(axis=1, keepdims=True)
+    through = densities[0]
+    return rest + through * np.clip(missing / (through * SOLID_ANGLES).sum(axis=1, keepdims=True), 0, None)
+
+
+def at(angles_rad: np.ndarray, density: np.ndarray) -> np.ndarray:
+    """Return a density at scattering angles, (2, n)."""
+    return np.array([np.interp(angles_rad, CENTRES, row) for row in density])
+
+
+def with_diffraction(angles_rad: np.ndarray, scattered: np.ndarray, sizes: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Return a phase function: what the drops' rays do and, by as much light again, their diffraction lobes.
+
+    `sizes` are size parameters and `share` their part of the drops' cross-section.
+    """
+    return (scattered + sum(part * geometric.diffraction(angles_rad, x) for part, x in zip(share, sizes, strict=True))) / 2
