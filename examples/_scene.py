@@ -201,6 +201,21 @@ def hdri(path: Path, strength: float, turn: float = 0.0) -> bpy.types.World:
     return world
 
 
+def plain_world(colour: Sequence[float], strength: float) -> bpy.types.World:
+    """A world of one colour; linear Rec.709 radiance times strength."""
+    world = bpy.data.worlds.new("World")
+    bpy.context.scene.world = world
+    if world.node_tree is None:
+        world.use_nodes = True
+    nodes, links = world.node_tree.nodes, world.node_tree.links
+    nodes.clear()
+    background, output = nodes.new("ShaderNodeBackground"), nodes.new("ShaderNodeOutputWorld")
+    background.inputs["Color"].default_value = (*colour, 1.0)
+    background.inputs["Strength"].default_value = strength
+    links.new(background.outputs["Background"], output.inputs["Surface"])
+    return world
+
+
 # Camera and render -------------------------------------------------------------------------------------------------------------------
 
 

@@ -26,11 +26,13 @@ def build() -> bpy.types.Scene:
     cut = round_brilliant()
     diamond = _scene.stone("Diamond", cut, WIDTH, _scene.gem("Diamond", "DIAMOND"))
     _scene.rest_on_facet(diamond, cut.names.index("main"), (0.0, 0.0), facing=math.radians(-75.0))
-    _scene.stage(0.5, _scene.surface("Table", (0.16, 0.155, 0.15), roughness=0.5, specular=0.2), depth=0.10, wall=0.15)
-    _scene.lamp("Lamp", "AREA", (-0.050, 0.055, 0.060), (0.0, 0.0, 0.0), 0.28, shape="DISK", size=0.003)
-    _scene.hdri(_scene.studio_light("interior"), 0.12, math.radians(-60.0))
+    _scene.stage(0.5, _scene.surface("Table", (0.42, 0.40, 0.38), roughness=0.6, specular=0.1), depth=0.10, wall=0.15)
+    _scene.lamp("Lamp", "SPOT", (-0.070, -0.010, 0.090), (0.0, 0.0, 0.002), 4.0, shadow_soft_size=0.0012, spot_size=math.radians(3.6), spot_blend=0.1)
+    _scene.hdri(_scene.studio_light("interior"), 0.16, math.radians(-60.0))
     _scene.camera((0.006, -0.062, 0.034), (0.0012, -0.0012, 0.0018), 120.0, fstop=22.0, focus=(0.0, -0.002, 0.003))
     scene.render.resolution_x, scene.render.resolution_y = 960, 640
+    if hasattr(scene, "opal"):
+        scene.opal.passes, scene.opal.photons_per_pass = 128, 400_000
     return scene
 
 
