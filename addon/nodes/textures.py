@@ -67,8 +67,8 @@ def _has_own_alpha(image: object) -> bool:
 @reads("ShaderNodeTexImage")
 def image_texture(n: NodeView) -> dict[str, Value]:
     if n.node.image is None:
-        n.problem("No image is chosen; it is magenta." if n.linked("Vector") else "No image is chosen; it is black.")
-        return {"Color": MAGENTA if n.linked("Vector") else constant(0.0, 0.0, 0.0), "Alpha": ONE}
+        n.problem("No image is chosen; it is magenta.")
+        return {"Color": MAGENTA, "Alpha": ONE}
     projection = n.node.projection
     return _image(n, position(n, "UV"), projection, n.node.extension)
 
@@ -76,8 +76,8 @@ def image_texture(n: NodeView) -> dict[str, Value]:
 @reads("ShaderNodeTexEnvironment")
 def environment_texture(n: NodeView) -> dict[str, Value]:
     if n.node.image is None:
-        n.problem("No image is chosen; it is black.")
-        return {"Color": constant(0.0, 0.0, 0.0)}
+        n.problem("No image is chosen; it is magenta.")
+        return {"Color": MAGENTA}
     return _image(n, position(n, "POSITION"), n.node.projection, "REPEAT")
 
 

@@ -32,8 +32,8 @@ from opal_source.addon.nodes.images import Images  # noqa: E402
 from opal_source.addon.translate.meshes import MeshNeeds, read_mesh  # noqa: E402
 
 SIZE, VIEW = 32, 2.2  # pixels, metres
-JITTER = 0.006  # pixels: Cycles' narrowest filter spreads its samples a little less than this
-CORNERS = ((0, 0), (JITTER, JITTER), (-JITTER, JITTER), (JITTER, -JITTER), (-JITTER, -JITTER))
+JITTER = 0.008  # pixels: Cycles' narrowest filter spreads its samples a little less than this
+SPREAD = tuple((x, y) for x in (0, JITTER, -JITTER) for y in (0, JITTER, -JITTER))
 
 
 class Context:
@@ -177,12 +177,12 @@ def run_program(scene, compiled, points, hits=None, ray_length=1.0):
 
 
 def opal_images(ball, material, size: int = SIZE):
-    """The same by Opal's program, at the pixels' centres and at the corners of where Cycles' sample may lie.
+    """The same by Opal's program, at the pixels' centres and around where Cycles' sample may lie.
 
     Returns
     -------
     ndarray
-        (5, size, size, 3), the centres first.
+        (9, size, size, 3), the centres first.
     list of Problem
         What the node readers could not keep.
     """
@@ -205,7 +205,7 @@ def opal_images(ball, material, size: int = SIZE):
         info[0, 1:6] = (ball.pass_index, *ball.color)
         scene.add_instances(mesh, [np.array(evaluated.matrix_world)[:3]], object_info=info)
         scene.commit()
-        images = np.stack([_seen(scene, compiled, size, corner) for corner in CORNERS])
+        images = np.stack([_seen(scene, compiled, size, offset) for offset in SPREAD])
     return images, [*compiled.problems, *context.problems]
 
 
