@@ -14,7 +14,7 @@ import numpy as np
 
 from opal_kernels.optics.rainbow import THEORIES, Cancelled, _mie_binding, airy, background, descartes, droplet, drops, geometric, mie, sun, water
 
-_DEFAULT_SIZES = {"MIE": 48, "AIRY": 21, "DROPLET": 21, "DESCARTES": 1, "DESCARTES_SAMPLED": 1}
+_DEFAULT_SIZES = {"AIRY": 21, "DROPLET": 21, "DESCARTES": 1, "DESCARTES_SAMPLED": 1}
 _RAY_GRID = 36001  # 0.005 degrees
 _NEGLIGIBLE = 1e-7  # share of the cross-section under which a size is left out
 
@@ -52,7 +52,7 @@ def build(
     n = water.index(nm, celsius, salinity) if index is None else np.broadcast_to(np.asarray(index, float), nm.shape)
     if not (np.isfinite(n) & (n > 1)).all():
         raise ValueError("the index of a drop relative to air must be finite and above 1")
-    radii, weights = drops.quadrature(radius_um, spread, distribution, sizes or _DEFAULT_SIZES[theory])
+    radii, weights = drops.quadrature(radius_um, spread, distribution, _sizes(theory, radius_um, nm) if sizes is None else sizes)
     area = weights * radii**2
     kept = area > _NEGLIGIBLE * area.sum()
     radii, weights = radii[kept], weights[kept]
@@ -76,6 +76,17 @@ def build(
             for future in futures:
                 future.cancel()
     return result
+
+
+def _sizes(theory: str, radius_um: float, nm: np.ndarray) -> int:
+    """How many sizes average the ripple of Lorenz-Mie theory away.
+
+    Measured on the peak of bows with 5 % spread: within 1 % of four times as many. Small drops have sharp resonances and need
+    many sizes, but cost little; large ones average over angle as well.
+    """
+    if theory != "MIE" or not radius_um > 0:
+        return _DEFAULT_SIZES.get(theory, 48)
+    return int(np.clip(4.5e4 / (2000 * np.pi * radius_um / nm.mean()), 48, 240))
 
 
 def _grid(theory: str, radii: np.ndarray, nm: float) -> int:

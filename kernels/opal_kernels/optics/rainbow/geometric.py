@@ -60,7 +60,7 @@ def index_of_deviation(angle: np.ndarray, k: int) -> np.ndarray:
         low, high = np.where(above, i, low), np.where(above, high, i)
     i = (low + high) / 2
     n = np.sqrt(np.sin(i) ** 2 + (k + 1) ** 2 * np.cos(i) ** 2)
-    return np.where((angle <= k * np.pi) & (angle >= (k - 1) * np.pi), n, np.nan)
+    return np.where((angle <= k * np.pi) & (angle >= 0), n, np.nan)
 
 
 def amplitudes(sine: np.ndarray, n: float, k: int) -> tuple[np.ndarray, np.ndarray]:

@@ -1,0 +1,326 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bows where the sky has them: rays, Airy, Lorenz-Mie and the traced drop against tables and against each other."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+from opal_kernels.optics import colour, rainbow
+from opal_kernels.optics.rainbow import airy, airy_function, descartes, droplet, drops, geometric, sun, water
+
+REFERENCE = Path(__file__).resolve().parents[1] / "reference_data"
+SUN = sun.MEAN_RADIUS_RAD
+
+
+def table(name):
+    return np.genfromtxt(REFERENCE / name, delimiter=",", names=True)
+
+
+def bow_angles(first=34.0, last=60.0, step=0.02):
+    """Angles over both bows and their radii (degrees from the antisolar point)."""
+    radius = np.arange(first, last, step)
+    return np.radians(180 - radius), radius
+
+
+# ---- Water and rays -------------------------------------------------------------------------------------------------
+
+
+def test_water_has_its_published_index():
+    rows = table("water_index.csv")
+    nm = rows["lambda_nm"]
+    np.testing.assert_allclose(water.daimon(nm), rows["n_Daimon2007_20C_abs"], atol=1e-9)
+    np.testing.assert_allclose(water.index(nm), rows["n_Daimon_rel_air"], atol=1e-8)
+    np.testing.assert_allclose(water.iapws(nm, 10.0), rows["n_IAPWS97_10C_abs"], atol=2e-7)
+    assert water.iapws(589.3, 25.0, 997.047435) == pytest.approx(1.3328581926, abs=1e-9)
+
+
+def test_sea_water_refracts_more():
+    # Quan and Fry 1995: 35 parts per thousand raise the index by about 0.0065; the primary shrinks by 0.9 degrees.
+    shift = water.index(550.0, salinity=35.0) - water.index(550.0)
+    assert shift == pytest.approx(0.0065, abs=3e-4)
+
+
+@pytest.mark.parametrize(("celsius", "salinity"), [(-1, 0), (101, 0), (20, -1), (np.nan, 0)])
+def test_impossible_water_is_refused(celsius, salinity):
+    with pytest.raises(ValueError):
+        water.index(550.0, celsius, salinity)
+
+
+def test_caustics_lie_where_the_table_has_them():
+    rows = table("rainbow_caustics.csv")
+    for k in (1, 2):
+        n = rows["n_rel_air"]
+        np.testing.assert_allclose(np.degrees(geometric.bow_radius(n, k)), rows[f"bowradius_k{k}_rel"], atol=1e-6)
+        np.testing.assert_allclose(np.degrees(geometric.caustic_incidence(n, k)), rows[f"i_k{k}_rel"], atol=1e-6)
+
+
+@pytest.mark.parametrize(("k", "deviation"), [(3, 318.26), (4, 403.70), (5, 488.23)])
+def test_higher_orders_have_their_deviations(k, deviation):
+    assert np.degrees(geometric.caustic_deviation(1.333, k)) == pytest.approx(deviation, abs=6e-3)
+
+
+def test_a_glass_bead_bow_has_22_degrees():
+    assert np.degrees(geometric.bow_radius(1.51, 1)) == pytest.approx(22.0, abs=0.6)
+
+
+@pytest.mark.parametrize("k", [1, 2, 3])
+def test_the_angle_gives_the_index_back(k):
+    n = np.linspace(1.2, 1.6, 9)
+    np.testing.assert_allclose(geometric.index_of_deviation(geometric.caustic_deviation(n, k), k), n, atol=1e-12)
+    assert np.isnan(geometric.index_of_deviation((k + 0.5) * np.pi, k))
+
+
+def test_the_primary_has_its_closed_inverse():
+    i = geometric.caustic_incidence(1.334, 1)
+    t = np.tan(i)
+    assert np.tan(geometric.bow_radius(1.334, 1) / 2) == pytest.approx(t**3 / (4 + 3 * t**2))
+
+
+def test_the_angle_gives_the_wavelength_back():
+    nm = np.arange(380.0, 781)
+    angles = geometric.caustic_deviation(water.index(np.array([420.0, 600.0])), 1)
+    np.testing.assert_allclose(descartes.wavelength_at(angles, 1, nm, water.index(nm)), [420, 600], atol=1e-3)
+
+
+@pytest.mark.parametrize(("k", "perpendicular", "polarisation"), [(1, 0.0877915, 0.9241), (2, 0.03515625, 0.8071)])
+def test_light_at_the_caustic_is_polarised_as_known(k, perpendicular, polarisation):
+    sine = np.sin(geometric.caustic_incidence(1.333, k))
+    s, p = (t**2 for t in geometric.amplitudes(sine, 1.333, k))
+    assert s == pytest.approx(perpendicular, abs=1e-7)
+    assert (s - p) / (s + p) == pytest.approx(polarisation, abs=1e-4)
+
+
+def test_all_orders_together_carry_all_light():
+    edges = np.linspace(0, np.pi, 361)
+    total = sum(geometric.energy(1.333, k, edges).sum(axis=1) for k in range(-1, 40))
+    np.testing.assert_allclose(total, 1, atol=5e-6)
+
+
+# ---- Airy -----------------------------------------------------------------------------------------------------------
+
+
+def test_airys_function_has_its_published_values():
+    x = np.array([0, 1, 2, 5, 8, -1, -2.338107410459767, -5, -10, -50])
+    # DLMF table 9.8 and Abramowitz and Stegun table 10.11.
+    ai = [0.3550280539, 0.1352924163, 0.03492413042, 1.083444281e-4, 4.692207616e-8, 0.5355608833, 0, 0.3507610090, 0.04024123849, -0.16188]
+    np.testing.assert_allclose(airy_function.airy(x)[0], ai, rtol=1e-6, atol=6e-6)
+    assert airy_function.airy(0.0)[1] == pytest.approx(-0.2588194037928068)
+
+
+@pytest.mark.parametrize("x", [-40.0, -7.0, -3.0, 0.7, 5.0, 9.0])
+def test_airys_function_solves_its_equation(x):
+    h = 1e-3
+    before, after = airy_function.airy(x - h), airy_function.airy(x + h)
+    value, slope = airy_function.airy(x)
+    assert (after[0] - before[0]) / (2 * h) == pytest.approx(slope, rel=1e-4)
+    assert (after[1] - before[1]) / (2 * h) == pytest.approx(x * value, rel=1e-3)
+
+
+def test_the_table_of_squares_follows_the_function():
+    x = np.linspace(-8, 40, 7919)
+    value, slope = airy_function.airy(-x)
+    for got, exact in zip(airy_function.squares(x), (value**2, slope**2), strict=True):
+        np.testing.assert_allclose(got, exact, atol=2e-4 * exact.max())
+
+
+def test_supernumeraries_stand_where_the_table_has_them():
+    with open(REFERENCE / "airy_supernumeraries.csv", encoding="utf-8") as file:
+        checked = 0
+        for row in csv.DictReader(file):
+            if float(row["radius_um"]) < 100:
+                continue
+            n, k, x = float(row["n_rel_air"]), int(row["k"]), float(row["x"])
+            assert geometric.curvature(n, k) == pytest.approx(float(row["h"]), rel=1e-6)
+            expected = [float(row[f"max{i}_radius_deg"]) for i in (1, 2, 3)]
+            low, high = min(expected) - 0.5, max(expected) + 0.5
+            radius = np.arange(low, high, 0.0005)
+            p = airy.bow(np.radians(180 - radius), n, x, k)[0]
+            tops = radius[1:-1][(p[1:-1] > p[:-2]) & (p[1:-1] > p[2:])]
+            for top in expected:
+                # Ai'^2 moves the maxima of the sum by a few thousandths of a degree from those of Ai^2 alone.
+                assert np.abs(tops - top).min() < 0.03, (row["radius_um"], k, top)
+            checked += 1
+    assert checked >= 6
+
+
+@pytest.mark.parametrize("radius", [100.0, 250.0])
+def test_airy_agrees_with_mie_on_the_bow(radius):
+    rows = table("rainbow_mie_airy_550nm.csv")
+    rows = rows[rows["radius_um"] == radius]
+    bow = (rows["theta_scat_deg"] >= 137) & (rows["theta_scat_deg"] <= 143)
+    p = rainbow.phase_function("AIRY", radius, [550.0], np.radians(rows["theta_scat_deg"]), sun_radius_rad=SUN)[:, 0]
+    assert p[0, bow].mean() == pytest.approx(rows["p_perp_mie"][bow].mean(), rel=0.03)
+    assert p[1, bow].mean() == pytest.approx(rows["p_par_mie"][bow].mean(), rel=0.03)
+    peak = (rows["p_perp_mie"] + rows["p_par_mie"]).max() / 2
+    assert p.mean(axis=0).max() == pytest.approx(peak, rel=0.09)
+
+
+def test_the_second_airy_term_carries_the_parallel_component():
+    n, x = 1.3343, 2856.0
+    _, _, _, t0, t1 = airy.caustic(n, 1)
+    assert abs(t0[1]) == pytest.approx(0.0579, abs=1e-4) and abs(t1[1]) == pytest.approx(1.223, abs=1e-3)
+    angles = np.radians(np.linspace(138.5, 143, 901))
+    assert airy.bow(angles, n, x, 1)[1].mean() > 3 * (airy.bow(angles, n, x, 1)[0] * (t0[1] / t0[0]) ** 2).mean()
+
+
+# ---- Tables ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("radius", [100.0, 250.0])
+def test_mie_tables_under_the_sun_agree_with_the_reference(radius):
+    rows = table("rainbow_mie_airy_550nm.csv")
+    rows = rows[rows["radius_um"] == radius]
+    p = rainbow.phase_function("MIE", radius, [550.0], np.radians(rows["theta_scat_deg"]), sun_radius_rad=SUN)[:, 0]
+    # The reference's own smoothing has steps of 0.02 degrees.
+    np.testing.assert_allclose(p, [rows["p_perp_mie"], rows["p_par_mie"]], rtol=0.02)
+    assert np.abs(p[0] / rows["p_perp_mie"] - 1).mean() < 0.003
+
+
+@pytest.mark.parametrize("theory", rainbow.THEORIES)
+@pytest.mark.parametrize("radius", [60.0, 300.0])
+def test_every_table_integrates_to_one(theory, radius):
+    angles = np.concatenate([np.linspace(0, 0.1, 8001)[:-1], np.linspace(0.1, np.pi, 30001)])
+    p = rainbow.phase_function(theory, radius, [550.0], angles)
+    assert p.shape == (2, 1, angles.size) and p.min() >= 0
+    f = p.mean(axis=(0, 1)) * np.sin(angles)
+    assert 2 * np.pi * ((f[1:] + f[:-1]) / 2 * np.diff(angles)).sum() == pytest.approx(1, abs=1e-4)
+
+
+@pytest.mark.parametrize("theory", rainbow.THEORIES)
+def test_without_diffraction_the_rest_is_doubled(theory):
+    angles = np.radians(np.linspace(30, 170, 50))
+    kept = rainbow.phase_function(theory, 250.0, [550.0], angles, spread=0.05, sizes=5)
+    removed = rainbow.phase_function(theory, 250.0, [550.0], angles, spread=0.05, sizes=5, diffraction=False)
+    np.testing.assert_allclose(removed, 2 * kept, rtol=2e-2, atol=2e-5)
+
+
+@pytest.mark.parametrize("theory", rainbow.THEORIES)
+def test_bows_lie_where_rays_put_them_and_red_is_outside(theory):
+    angles, radius = bow_angles(step=0.05)
+    nm = np.array([450.0, 650.0])
+    p = rainbow.phase_function(theory, 500.0, nm, angles, spread=0.05, sizes=9, sun_radius_rad=SUN).mean(axis=0)
+    primary, secondary = radius < 46, radius > 46
+    first = [radius[primary][row[primary].argmax()] for row in p]
+    second = [radius[secondary][row[secondary].argmax()] for row in p]
+    expected = np.degrees([geometric.bow_radius(water.index(nm), k) for k in (1, 2)])
+    np.testing.assert_allclose(first, expected[0], atol=0.45)
+    np.testing.assert_allclose(second, expected[1], atol=0.75)
+    assert first[1] - first[0] == pytest.approx(expected[0][1] - expected[0][0], abs=0.3)
+    assert second[0] > second[1], "the secondary's colours are reversed"
+    dark = p[:, np.abs(radius - 46.5).argmin()]
+    assert (p[:, primary].max(axis=1) / dark > 20).all(), "Alexander's band is dark"
+
+
+def test_the_colours_of_a_bow_are_those_of_the_reference():
+    reference = np.load(REFERENCE / "rainbow_xyz.npz")
+    choose = slice(0, None, 4)
+    angles = np.radians(180 - reference["radius_deg"][choose])
+    nm = np.arange(380.0, 781, 20)
+    matching = colour.observer()[:, 20:421:20] * 20 / colour.observer()[1].sum()
+    p = rainbow.phase_function("MIE", 50.0, nm, angles, spread=0.05, sizes=24, sun_radius_rad=SUN).mean(axis=0)
+    xyz, expected = (matching @ p).T, reference["mie_50"][choose]
+    assert np.sqrt(np.mean((xyz - expected) ** 2, axis=0)).max() < 0.012 * expected.max()
+
+
+@pytest.mark.parametrize("radius", [100.0, 250.0])
+def test_the_traced_drop_agrees_with_mie_when_round(radius):
+    rows = table("rainbow_mie_airy_550nm.csv")
+    rows = rows[rows["radius_um"] == radius]
+    p = rainbow.phase_function("DROPLET", radius, [550.0], np.radians(rows["theta_scat_deg"]), sun_radius_rad=SUN)[:, 0]
+    mie = (rows["p_perp_mie"] + rows["p_par_mie"]) / 2
+    bow = (rows["theta_scat_deg"] >= 137) & (rows["theta_scat_deg"] <= 145)
+    assert p.mean(axis=0)[bow].mean() == pytest.approx(mie[bow].mean(), rel=0.03)
+    peaks = [rows["theta_scat_deg"][bow][row[bow].argmax()] for row in (p.mean(axis=0), mie)]
+    assert peaks[0] == pytest.approx(peaks[1], abs=0.0501)
+    assert p[1, bow].mean() == pytest.approx(rows["p_par_mie"][bow].mean(), rel=0.05)
+
+
+def test_flattened_drops_lower_the_top_of_the_bow():
+    rows = table("oblate_bow_top.csv")
+    n = 1.333
+    for row in rows:
+        for name, ratio in (("q0990", 0.99), ("q0975", 0.975), ("q0950", 0.95)):
+            fold = droplet.fold(n, 1, ratio, np.radians(row["sun_elev_deg"]), 0.0)
+            assert 180 - np.degrees(fold.angle) == pytest.approx(row[name], abs=2e-3)
+
+
+def test_the_feet_of_the_bow_keep_their_radius():
+    fold = droplet.fold(1.333, 1, 0.975, 0.0, np.pi / 2)
+    assert 180 - np.degrees(fold.angle) == pytest.approx(np.degrees(geometric.bow_radius(1.333, 1)), abs=1e-3)
+
+
+def test_small_and_large_falling_drops_make_a_twinned_bow():
+    angles, radius = bow_angles(37, 44)
+    top = {}
+    for micrometres in (200.0, 500.0):
+        p = rainbow.phase_function(
+            "DROPLET", micrometres, [600.0], angles, sun_radius_rad=SUN, flattening=1.0, sun_elevation_rad=np.radians(20)
+        ).mean(axis=(0, 1))
+        top[micrometres] = radius[p.argmax()]
+    assert 1.0 < top[200.0] - top[500.0] < 3.0
+
+
+def test_falling_drops_have_their_axis_ratio():
+    rows = table("drop_axis_ratio.csv")
+    got = [droplet.axis_ratio(500 * d) for d in rows["diameter_mm"]]
+    np.testing.assert_allclose(got, rows["axis_ratio_used"], atol=1e-9)
+
+
+# ---- Sizes and sun --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("distribution", ["NORMAL", "LOG_NORMAL", "GAMMA"])
+@pytest.mark.parametrize("spread", [0.05, 0.2])
+def test_sizes_have_the_mean_and_the_spread_asked_for(distribution, spread):
+    radii, weights = drops.quadrature(250.0, spread, distribution, 401)
+    mean = (radii * weights).sum()
+    assert mean == pytest.approx(250, rel=3e-3)
+    assert np.sqrt(((radii - mean) ** 2 * weights).sum()) / mean == pytest.approx(spread, rel=1e-2)
+
+
+@pytest.mark.parametrize(("rain", "extinction"), [(1, 3.6e-4), (5, 1.0e-3), (20, 2.4e-3), (50, 4.3e-3)])
+def test_rain_has_its_extinction(rain, extinction):
+    assert drops.marshall_palmer_extinction(rain) == pytest.approx(extinction, rel=0.03)
+
+
+def test_the_sun_keeps_light_and_blurs_by_its_radius():
+    values = np.zeros(36001)
+    values[18000] = 1.0
+    smoothed = sun.smooth(values, SUN)
+    assert smoothed.sum() == pytest.approx(1)
+    seen = np.flatnonzero(smoothed > 1e-9)
+    assert (seen[-1] - seen[0]) * 0.005 / 2 == pytest.approx(0.2666, abs=0.006)
+    assert np.array_equal(sun.smooth(values, 0.0), values)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"theory": "NEWTON"}, "no rainbow theory"),
+        ({"radius_um": 0.0}, "radius"),
+        ({"radius_um": 1e6}, "radius"),
+        ({"radius_um": np.nan}, "radius"),
+        ({"spread": 3.0}, "spread"),
+        ({"sun_radius_rad": -1.0}, "sun"),
+        ({"wavelengths_nm": []}, "wavelengths"),
+        ({"wavelengths_nm": [50.0]}, "wavelengths"),
+        ({"angles_rad": [4.0]}, "angles"),
+        ({"index": [0.9]}, "index"),
+        ({"distribution": "CAUCHY"}, "distribution"),
+        ({"theory": "DROPLET", "flattening": 9.0}, "flattening"),
+    ],
+)
+def test_impossible_requests_are_refused_in_a_sentence(change, said):
+    arguments = {"theory": "AIRY", "radius_um": 250.0, "wavelengths_nm": [550.0], "angles_rad": [2.4]} | change
+    with pytest.raises(ValueError, match=said):
+        rainbow.phase_function(**arguments)
+
+
+def test_a_table_can_be_watched_and_stopped():
+    seen = []
+    nm = np.linspace(400, 700, 6)
+    rainbow.phase_function("AIRY", 250.0, nm, [2.4], progress=seen.append)
+    assert len(seen) == 6 and seen[-1] == 1
+    with pytest.raises(rainbow.Cancelled):
+        rainbow.phase_function("AIRY", 250.0, nm, [2.4], progress=lambda _: False)
