@@ -32,13 +32,14 @@ def test_amplitudes_agree_with_other_codes():
 
 
 # Wiscombe, NCAR/TN-140: x, m, Q_ext, Q_sca, S11 at 0, 30, 90 and 180 degrees, as printed (single precision).
-# The copies of S11(0) for x = 1e4 that go round, 1.698e15, break the optical theorem (x^2 Q_ext/4)^2 = 2.51e15: left out.
+# The copies of S11(0) for x = 1e4 that go round, 1.698e15, break the optical theorem (x^2 Q_ext/4)^2 = 2.51e15: left out, as is the
+# backward value of the nearly clear large sphere, a glory that three double-precision codes put at 9.39304e5.
 WISCOMBE = [
     (10, 0.75, 2.23226, 2.23226, (3.20960e3, 1.94639e2, 1.97556, 1.16461)),
     (1000, 0.75, 1.99791, 1.99791, (2.49657e11, 2.19392e5, 2.92958e4, 2.34788e5)),
     (1, 1.33 + 1e-5j, 0.0939524, 0.0939234, (5.26135e-2, 4.38416e-2, 1.70004e-2, 2.11561e-2)),
     (100, 1.33 + 1e-5j, 2.10132, 2.09659, (2.76125e7, 5.75778e3, 77.5219, 5365.06)),
-    (1e4, 1.33 + 1e-5j, 2.00409, 1.72386, (None, 7.76023e7, 6.14549e5, 1.39396e6)),
+    (1e4, 1.33 + 1e-5j, 2.00409, 1.72386, (None, 7.76023e7, 6.14549e5, None)),
     (1, 1.5 + 1j, 2.33632, 0.663454, (0.377446, 0.313213, 0.120663, 0.143251)),
     (100, 1.5 + 1j, 2.09750, 1.28370, (2.75830e7, 1208.65, 474.503, 431.053)),
     (1e4, 1.5 + 1j, 2.00437, 1.23657, (None, 1.01763e7, 4.75423e6, 4.30879e6)),
@@ -120,7 +121,7 @@ def test_fogbow_where_clouds_have_it(radius):
     row = next(r for r in rows("fog_corona_glory.csv") if float(r["radius_um"]) == radius and r["lambda_nm"] == "550")
     angles = np.radians(180 - np.linspace(33, 44, 441))
     p = phase_function("MIE", radius, [550.0], angles, spread=0.05).mean(axis=(0, 1))
-    assert 180 - np.degrees(angles[p.argmax()]) == pytest.approx(float(row["fogbow_radius_deg"]), abs=0.35)
+    assert 180 - np.degrees(angles[p.argmax()]) == pytest.approx(float(row["fogbow_radius_deg"]), abs=max(5 / radius, 0.3))
     assert p.max() == pytest.approx(float(row["p_fogbow"]), rel=0.1)
 
 
