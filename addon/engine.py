@@ -24,7 +24,8 @@ class OpalRenderEngine(bpy.types.RenderEngine):
         self._viewport: Any = None
 
     def __del__(self) -> None:
-        viewport = getattr(self, "_viewport", None)
+        # Blender has taken its half of the object away: only Python's own attributes can be read.
+        viewport = object.__getattribute__(self, "__dict__").get("_viewport")
         if viewport is not None:
             viewport.close()
 

@@ -31,7 +31,7 @@ void ColourTables::prepare(const opal_tables &tables, float first, float last) {
 
   for (int i = 0; i < kTableSize; ++i) d65[i] = tables.d65[i];
   // D65 in the chosen range must come out as (1,1,1) whatever the range: each channel is renormalised.
-  double rgb_of_d65[3] = {0, 0, 0};
+  double rgb_of_d65[3] = {0, 0, 0}, luminance_of_one = 0;
   for (int i = 0; i < kTableSize; ++i) {
     for (int c = 0; c < 3; ++c) {
       double r = 0;
@@ -39,13 +39,15 @@ void ColourTables::prepare(const opal_tables &tables, float first, float last) {
       rgb_response[c][i] = float(r);
       rgb_of_d65[c] += r * tables.d65[i] * inside(i);
     }
+    luminance_of_one += double(tables.observer[kTableSize + i]) * inside(i);
     for (int c = 0; c < 3; ++c) basis[c][i] = tables.basis[c * kTableSize + i];
   }
-  // d65 is scaled to luminance 1 with the common factor; what remains per channel is rounding and the cut range.
+  // d65 is scaled to luminance 1, in units in which a spectrum of 1 everywhere has luminance 1 too; what remains per
+  // channel is rounding and the cut range.
   const double scale = 1.0 / (0.2126729 * rgb_of_d65[0] + 0.7151522 * rgb_of_d65[1] + 0.0721750 * rgb_of_d65[2]);
-  for (int i = 0; i < kTableSize; ++i) d65[i] = float(d65[i] * scale * 100.0);
+  for (int i = 0; i < kTableSize; ++i) d65[i] = float(d65[i] * scale * luminance_of_one);
   for (int c = 0; c < 3; ++c)
-    for (int i = 0; i < kTableSize; ++i) rgb_response[c][i] = float(rgb_response[c][i] / (rgb_of_d65[c] * scale * 100.0));
+    for (int i = 0; i < kTableSize; ++i) rgb_response[c][i] = float(rgb_response[c][i] / (rgb_of_d65[c] * scale * luminance_of_one));
 
   double total = 0;
   std::array<double, kTableSize> running{};

@@ -19,6 +19,12 @@ void make_surface(const Scene &scene, const Ray &ray, const Hit &hit, uint32_t r
   set.holdout = 0;
   set.albedo = {};
 
+  // An object that cuts the film has no surface for what the camera sees directly.
+  if (depth == 0 && (ray_kind & OPAL_RAY_CAMERA) && scene.groups[out.sp.instance->group].holdout) {
+    out.is_gem = out.has_smooth_lobe = out.transmissive = false;
+    set.holdout = 1;
+    return;
+  }
   if (material.is_gem) {
     out.boundary = boundary_at(scene, interior, out.sp, out.material, w);
     out.nothing = !out.boundary.real;

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The engine as a good citizen: it is registered, renders, ends when told, writes what it promises."""
+
+import threading
+import time
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+import stage  # noqa: E402
+
+pytestmark = pytest.mark.usefixtures("opal")
+
+
+def busy_scene(passes=2000):
+    """A scene whose whole render takes minutes."""
+    scene = stage.scene(width=64, height=48, passes=passes)
+    stage.camera((0, 0, 5))
+    stage.world()
+    stage.plane(size=20, material=stage.matte())
+    return scene
+
+
+def test_the_engine_is_listed_by_its_public_name():
+    assert "OPAL" in {item.identifier for item in bpy.types.RenderSettings.bl_rna.properties["engine"].enum_items} or (
+        bpy.types.RenderEngine.bl_rna_get_subclass_py("OPAL") is not None
+    )
+
+
+def test_the_same_seed_gives_the_same_bits_on_any_number_of_threads(tmp_path):
+    scene = busy_scene(passes=2)
+    scene.opal.photons_per_pass = 2000
+    pictures = []
+    scene.render.threads_mode = "FIXED"
+    for threads in (1, 2, 3):
+        scene.render.threads = threads
+        pictures.append(stage.render(tmp_path))
+    assert pictures[0][..., :3].mean() > 0.3
+    np.testing.assert_array_equal(pictures[0], pictures[1])
+    np.testing.assert_array_equal(pictures[0], pictures[2])
+
+
+def test_another_seed_gives_other_noise_and_the_same_mean(tmp_path):
+    scene = busy_scene(passes=8)
+    first = stage.render(tmp_path)[..., :3]
+    scene.opal.seed = 1
+    second = stage.render(tmp_path)[..., :3]
+    assert not np.array_equal(first, second)
+    spread = (first - second).std() / np.sqrt(first.shape[0] * first.shape[1])
+    assert abs(first.mean() - second.mean()) < 5 * spread
+
+
+def test_the_time_limit_ends_the_render(tmp_path):
+    scene = busy_scene()
+    scene.opal.time_limit = 1.0
+    begun = time.perf_counter()
+    picture = stage.render(tmp_path)
+    assert time.perf_counter() - begun < 6
+    assert picture[..., :3].mean() == pytest.approx(0.5, rel=0.05)
+
+
+def test_the_noise_threshold_ends_the_render_once_it_is_reached(tmp_path):
+    scene = busy_scene()
+    scene.opal.noise_threshold = 0.05
+    begun = time.perf_counter()
+    picture = stage.render(tmp_path)[..., 1]
+    assert time.perf_counter() - begun < 60
+    assert picture.std() / picture.mean() < 0.1
+
+
+def test_a_running_pass_stops_within_a_third_of_a_second(monkeypatch):
+    """Escape is Blender's `test_break`: here it turns true while one very long pass runs."""
+    scene = busy_scene(passes=1)
+    scene.render.resolution_x, scene.render.resolution_y, scene.opal.samples_per_pass = 640, 480, 64
+    final_render = stage.addon("final_render")
+    pressed = {}
+
+    class Wrapped(final_render._FinalRender):
+        def _run_pass(self, render, *arguments):
+            timer = threading.Timer(0.5, lambda: pressed.setdefault("at", time.perf_counter()))
+            timer.start()
+            outer = self.engine
+
+            class Engine:
+                def test_break(self):
+                    return "at" in pressed
+
+                def __getattr__(self, name):
+                    return getattr(outer, name)
+
+            self.engine = Engine()
+            finished = super()._run_pass(render, *arguments)
+            pressed["stopped"] = time.perf_counter()
+            self.engine = outer
+            return finished
+
+    monkeypatch.setattr(final_render, "_FinalRender", Wrapped)
+    bpy.ops.render.render()
+    assert pressed["stopped"] > pressed["at"], "the pass was too short to be stopped"
+    assert pressed["stopped"] - pressed["at"] < 0.3
+
+
+def test_progress_statistics_and_time_left_are_told(monkeypatch, tmp_path):
+    busy_scene(passes=3)
+    final_render = stage.addon("final_render")
+    told = []
+    original = final_render._FinalRender._tell
+    monkeypatch.setattr(
+        final_render._FinalRender, "_tell", lambda self, *arguments: (told.append(arguments), original(self, *arguments))
+    )
+    stage.render(tmp_path)
+    assert {arguments[0] for arguments in told} <= {0, 1, 2} and len(told) >= 3
+    assert all(0 <= done <= total for _, total, done, _ in told)
+
+
+def test_motion_blur_smears_a_moving_object_along_its_path(tmp_path):
+    scene = stage.scene(width=32, height=8, passes=8, samples=16)
+    stage.camera((0, 0, 5), type="ORTHO", ortho_scale=8)
+    card = stage.plane(size=1, material=stage.glowing())
+    for frame, x in ((0, -2), (2, 2)):
+        card.location.x = x
+        card.keyframe_insert("location", frame=frame)
+    scene.frame_set(1)
+    sharp = stage.render(tmp_path)[4, :, 1]
+    scene.render.use_motion_blur = True
+    scene.render.motion_blur_shutter = 1.0
+    blurred = stage.render(tmp_path)[4, :, 1]
+    assert blurred.sum() == pytest.approx(sharp.sum(), rel=0.1), "motion moves light, it makes none"
+    assert (blurred > 0.05).sum() > 1.8 * (sharp > 0.05).sum()
+    assert scene.frame_current == 1
+
+
+def test_a_spectral_file_holds_the_light_of_a_white_world(tmp_path):
+    scene = stage.scene(width=8, height=8, passes=16, samples=16)
+    stage.camera()
+    stage.world()
+    scene.opal.use_spectral_output = True
+    scene.opal.spectral_bins = 47
+    scene.opal.spectral_path = str(tmp_path / "spectra_##")
+    picture = stage.render(tmp_path)
+    import OpenImageIO as oiio
+
+    image = oiio.ImageBuf(str(tmp_path / "spectra_01.exr"))
+    names = image.spec().channelnames
+    spectral = [name for name in names if name.startswith("S0.")]
+    assert len(spectral) == 47 and "S0.365,0nm" in spectral
+    assert image.spec().getattribute("spectralLayoutVersion") == "1.0"
+    pixels = image.get_pixels(oiio.FLOAT)
+    measured = pixels[..., [names.index(name) for name in spectral]].mean((0, 1))
+    wavelengths = np.array([float(name[3:-2].replace(",", ".")) for name in spectral])
+    from opal_kernels.optics import colour
+
+    white = np.interp(wavelengths, colour.WAVELENGTHS_NM, colour.white())
+    order = np.argsort(wavelengths)
+    visible = (wavelengths[order] > 420) & (wavelengths[order] < 680)
+    np.testing.assert_allclose(measured[order][visible], white[order][visible], rtol=0.1)
+    assert picture[..., :3].mean() == pytest.approx(1.0, rel=0.03)
+
+
+def test_denoising_lowers_noise_and_keeps_the_mean(tmp_path):
+    from opal_kernels import denoise
+
+    if reason := denoise.unavailable():
+        pytest.skip(reason)
+    scene = busy_scene(passes=2)
+    noisy = stage.render(tmp_path)[..., :3]
+    scene.opal.denoise = True
+    clean = stage.render(tmp_path)[..., :3]
+    assert clean.std() < 0.5 * noisy.std()
+    assert clean.mean() == pytest.approx(noisy.mean(), rel=0.02)
+
+
+def test_material_previews_are_rendered_fast(tmp_path):
+    material = stage.matte()
+    material.opal.kind = "GEM"
+    settings = stage.addon("settings")
+    scene = stage.scene(passes=500)
+    scene.opal.photons_per_pass = 1_000_000
+    preview = settings.render_settings(scene, settings.frame_of(scene.render), preview=True)
+    assert preview.photons_per_pass <= 20_000 and preview.samples_per_pass == 1 and preview.spectral_bins == 0
+
+
+def test_what_cannot_be_read_is_named_in_the_report(tmp_path):
+    stage.scene()
+    stage.camera((0, 0, 5))
+    stage.plane("Card", size=20, material=stage.node_material("Toon one", "BsdfToon"))
+    stage.render(tmp_path)
+    assert any("Toon one" in entry for entry in stage.problems()), stage.problems()
