@@ -112,7 +112,8 @@ def stage(material) -> bpy.types.Object:
     color = ball.data.color_attributes.new("Shade", "FLOAT_COLOR", "POINT")
     for i, vertex in enumerate(ball.data.vertices):
         color.data[i].color = (*(0.5 + 0.5 * x for x in vertex.co), 0.25)
-    ball.data.materials.append(material)
+    if material is not None:
+        ball.data.materials.append(material)
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.data.type, camera.data.ortho_scale = "ORTHO", VIEW
     camera.location = (0, 0, 5)
@@ -240,3 +241,32 @@ def difference(ball, material):
     assert images.max() > 0 or theirs.max() == 0, "Opal shows nothing"
     low, high = images.min(axis=0), images.max(axis=0)
     return np.maximum(low - theirs, theirs - high).clip(0).max(axis=2), problems
+
+
+def world_difference(world):
+    """A world seen by a wide camera from away of the origin: how far the two are apart, and the problems found.
+
+    The camera is a perspective one, so that every pixel looks another way.
+    """
+    stage(None)
+    for ball in [o for o in bpy.data.objects if o.type == "MESH"]:
+        bpy.data.objects.remove(ball)
+    scene = bpy.context.scene
+    camera = scene.camera
+    camera.data.type, camera.data.lens, camera.data.sensor_width = "PERSP", 15.0, 36.0
+    camera.location, camera.rotation_euler = (1.0, 2.0, 3.0), (1.1, 0.2, 0.5)
+    scene.world = world
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    rotation = np.array(camera.evaluated_get(depsgraph).matrix_world, np.float64)[:3, :3]
+    images = []
+    with Scene(threads=1) as kernels:
+        context = Context(kernels, depsgraph)
+        compiled = compile_world(world, context)
+        for offset in SPREAD:
+            x, y = np.meshgrid(*[((np.arange(SIZE) + 0.5 + o) / SIZE - 0.5) * 36 / 15 for o in offset])
+            directions = np.stack([x, y, np.full_like(x, -1.0)], axis=2) @ rotation.T
+            directions /= np.linalg.norm(directions, axis=2, keepdims=True)
+            images.append(run_program(kernels, compiled, directions.reshape(-1, 3)).reshape(SIZE, SIZE, 3))
+    images, theirs = np.maximum(images, 0), np.maximum(cycles_image(), 0)
+    low, high = images.min(axis=0), images.max(axis=0)
+    return np.maximum(low - theirs, theirs - high).clip(0).max(axis=2), [*compiled.problems, *context.problems]
