@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A carat of diamond on a table: a round brilliant under a small lamp, in an evening room.
 
-The stone lies as a loose brilliant does, on one of its pavilion mains, so that its table faces the camera. The lamp stands behind it and is
-3 mm wide: every facet throws its own image of it on the table, split into colours by the diamond's dispersion.
+The stone lies as a loose brilliant does, on one of its pavilion mains, so that its table faces the camera. A lamp of 0.6 mm radius shines on
+nothing but the stone, through its crown; the pavilion turns the light round, and every facet it leaves by throws its own image of the lamp on
+the table, split into colours by the diamond's dispersion.
 """
 
 import math
@@ -10,6 +11,7 @@ import sys
 from pathlib import Path
 
 import bpy
+from mathutils import Vector
 
 sys.path.append(str(Path(__file__).resolve().parent))
 import _scene
@@ -26,13 +28,23 @@ def build() -> bpy.types.Scene:
     cut = round_brilliant()
     diamond = _scene.stone("Diamond", cut, WIDTH, _scene.gem("Diamond", "DIAMOND"))
     _scene.rest_on_facet(diamond, cut.names.index("main"), (0.0, 0.0), facing=math.radians(-75.0))
-    _scene.stage(0.5, _scene.surface("Table", (0.42, 0.40, 0.38), roughness=0.6, specular=0.1), depth=0.10, wall=0.15)
-    _scene.lamp("Lamp", "SPOT", (-0.070, -0.010, 0.090), (0.0, 0.0, 0.002), 4.0, shadow_soft_size=0.0012, spot_size=math.radians(3.6), spot_blend=0.1)
-    _scene.hdri(_scene.studio_light("interior"), 0.16, math.radians(-60.0))
-    _scene.camera((0.006, -0.062, 0.034), (0.0012, -0.0012, 0.0018), 120.0, fstop=22.0, focus=(0.0, -0.002, 0.003))
+    _scene.stage(0.5, _scene.surface("Table", (0.24, 0.27, 0.32), roughness=0.6, specular=0.1), depth=0.10, wall=0.15)
+    _scene.lamp(
+        "Lamp",
+        "SPOT",
+        (-0.056, -0.034, 0.094),
+        diamond.matrix_world @ Vector((0.0, 0.0, 0.0006)),
+        22.0,
+        shadow_soft_size=0.0006,
+        spot_size=math.radians(1.5),
+        spot_blend=0.15,
+    )
+    _scene.hdri(_scene.studio_light("interior"), 0.14, math.radians(-60.0))
+    _scene.camera((0.006, -0.062, 0.038), (-0.0008, -0.0022, 0.0010), 98.0, fstop=22.0, focus=(0.0, -0.002, 0.003))
     scene.render.resolution_x, scene.render.resolution_y = 960, 640
     if hasattr(scene, "opal"):
-        scene.opal.passes, scene.opal.photons_per_pass = 128, 400_000
+        scene.opal.passes, scene.opal.photons_per_pass = 256, 400_000
+        scene.opal.time_limit = 170.0
     return scene
 
 

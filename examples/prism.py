@@ -59,7 +59,8 @@ def build() -> bpy.types.Scene:
     _scene.camera((0.050, -0.24, 0.27), (0.026, -0.042, 0.0), 60.0, fstop=5.6, focus=(0.0, -0.005, 0.01))
     scene.render.resolution_x, scene.render.resolution_y = 960, 640
     if hasattr(scene, "opal"):
-        scene.opal.passes, scene.opal.photons_per_pass = 64, 400_000
+        scene.opal.passes, scene.opal.photons_per_pass = 256, 400_000
+        scene.opal.time_limit = 170.0
     return scene
 
 
