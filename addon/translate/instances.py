@@ -24,6 +24,8 @@ _VISIBILITY = (
     ("visible_volume_scatter", 32),
 )
 _CAMERA = 1
+# Determinant below which a matrix cannot be inverted in single precision: a scale of 1e-10.
+_SMALLEST_VOLUME = 1e-30
 
 
 @dataclass
@@ -104,8 +106,7 @@ def collect(
     random_ids = np.empty(len(matrices), np.int32)
     instances.foreach_get("random_id", random_ids)
     usable = np.isfinite(matrices).all(axis=(1, 2))
-    with np.errstate(all="ignore"):
-        usable &= np.abs(np.linalg.det(matrices[:, :3, :3].astype(np.float64))) > 0
+    usable[usable] = np.abs(np.linalg.det(matrices[usable, :3, :3].astype(np.float64))) > _SMALLEST_VOLUME
 
     context = _LayerContext(depsgraph)
     looks: list[_Look | None] = []

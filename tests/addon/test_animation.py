@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Frame after frame: values follow their curves, memory stays flat, settings survive the file."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+import stage  # noqa: E402
+
+pytestmark = pytest.mark.usefixtures("opal")
+
+
+def resident_bytes() -> int:
+    with open("/proc/self/statm", encoding="ascii") as numbers:
+        return int(numbers.read().split()[1]) * 4096
+
+
+def test_twenty_frames_leave_memory_flat(tmp_path):
+    scene = stage.scene(width=64, height=48, passes=1, samples=1)
+    stage.camera((0, 0, 8))
+    stage.world()
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=200, y_subdivisions=200, size=6)
+    grid = bpy.context.object
+    for frame, turn in ((1, 0.0), (20, 3.0)):
+        grid.rotation_euler.z = turn
+        grid.keyframe_insert("rotation_euler", frame=frame)
+    used = []
+    for frame in range(1, 21):
+        scene.frame_set(frame)
+        bpy.ops.render.render()
+        used.append(resident_bytes())
+    grown = used[-1] - used[4]
+    mesh_bytes = 80_000 * 3 * (12 + 4)
+    assert grown < 3 * mesh_bytes, f"{grown / 2**20:.1f} MB over 15 frames"
+
+
+def test_animated_values_reach_the_picture(tmp_path):
+    scene = stage.scene()
+    stage.camera((0, 0, 5))
+    material = stage.glowing()
+    strength = next(n for n in material.node_tree.nodes if n.type == "EMISSION").inputs["Strength"]
+    for frame, value in ((1, 1.0), (11, 3.0)):
+        strength.default_value = value
+        strength.keyframe_insert("default_value", frame=frame)
+    stage.plane(size=20, material=material)
+    for frame, value in ((1, 1.0), (11, 3.0)):
+        scene.frame_set(frame)
+        assert stage.render(tmp_path)[..., :3].mean() == pytest.approx(value, rel=0.05)
+
+
+def test_render_animation_writes_every_frame(tmp_path):
+    scene = stage.scene(width=8, height=8, passes=1, samples=1)
+    stage.camera()
+    scene.frame_start, scene.frame_end = 1, 3
+    scene.render.filepath = str(tmp_path / "frame_")
+    scene.render.image_settings.file_format = "PNG"
+    bpy.ops.render.render(animation=True)
+    assert sorted(path.name for path in tmp_path.glob("*.png")) == [f"frame_{i:04d}.png" for i in (1, 2, 3)]
+
+
+def test_saving_and_loading_keeps_every_setting(tmp_path):
+    def settings_of(group):
+        found = {}
+        for prop in group.bl_rna.properties:
+            if prop.identifier in {"rna_type", "name"} or prop.is_skip_save:
+                continue
+            value = getattr(group, prop.identifier)
+            if prop.type == "POINTER":
+                found[prop.identifier] = settings_of(value)
+            else:
+                found[prop.identifier] = tuple(value) if getattr(prop, "is_array", False) else value
+        return found
+
+    def change(group):
+        for prop in group.bl_rna.properties:
+            if prop.identifier == "rna_type" or prop.is_readonly or prop.is_hidden:
+                continue
+            value = getattr(group, prop.identifier)
+            if prop.type == "BOOLEAN":
+                setattr(group, prop.identifier, not value)
+            elif prop.type == "INT":
+                setattr(group, prop.identifier, value + 1)
+            elif prop.type == "ENUM":
+                setattr(group, prop.identifier, prop.enum_items[-1].identifier if prop.enum_items else value)
+            elif prop.type == "STRING":
+                setattr(group, prop.identifier, value + "x")
+            elif prop.type == "FLOAT" and not prop.is_array:
+                setattr(group, prop.identifier, value * 0.9 + 0.01)
+
+    scene = stage.scene()
+    material = bpy.data.materials.new("Stone")
+    material.use_fake_user = True
+    material.opal.gem.species = "RUBY"
+    change(scene.opal)
+    change(bpy.context.view_layer.opal)
+    change(material.opal)
+    scene.opal.wavelengths = (400, 700)
+    groups = (scene.opal, bpy.context.view_layer.opal, material.opal)
+    before = [settings_of(group) for group in groups]
+    path = str(tmp_path / "settings.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    scene = bpy.context.scene
+    after = [settings_of(g) for g in (scene.opal, bpy.context.view_layer.opal, bpy.data.materials["Stone"].opal)]
+    assert scene.render.engine == "OPAL"
+    assert after == before
+    assert np.isclose(after[0]["wavelengths"], (400, 700)).all()

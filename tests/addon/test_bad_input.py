@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Input that is broken or absurd ends in a picture or in one sentence, never in a crash or a hang."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+import stage  # noqa: E402
+
+pytestmark = pytest.mark.usefixtures("opal")
+
+
+def refused(match):
+    return pytest.raises(RuntimeError, match=match)
+
+
+def test_a_scene_without_camera_is_refused_by_name():
+    stage.scene()
+    stage.plane()
+    with refused("no camera|No camera|Cannot render, no camera"):
+        bpy.ops.render.render()
+
+
+def test_a_scene_without_objects_or_lights_is_black(tmp_path):
+    stage.scene()
+    stage.camera()
+    picture = stage.render(tmp_path)
+    assert not picture[..., :3].any()
+
+
+def test_a_scene_without_light_is_black(tmp_path):
+    stage.scene()
+    stage.camera()
+    stage.plane(size=20, material=stage.matte())
+    assert not stage.render(tmp_path)[..., :3].any()
+
+
+def test_vertices_that_are_not_numbers_lose_their_faces_and_are_reported(tmp_path):
+    stage.scene()
+    stage.camera((0, 0, 5))
+    obj = stage.mesh(
+        "Broken",
+        [(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0), (0, 0, 50)],
+        [(0, 1, 2, 3), (0, 1, 4)],
+        material=stage.glowing(),
+    )
+    obj.data.vertices[4].co = (float("nan"), 0, 0)
+    assert stage.render(tmp_path)[..., :3].mean() == pytest.approx(1, rel=0.05)
+    assert any("Broken" in entry and "1 triangles" in entry for entry in stage.problems()), stage.problems()
+
+
+def test_triangles_without_area_do_no_harm(tmp_path):
+    stage.scene()
+    stage.camera((0, 0, 5))
+    obj = stage.mesh(
+        "Thin", [(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)], [(0, 1, 2, 3), (0, 1, 1), (2, 2, 2)], material=stage.glowing()
+    )
+    obj.data.polygons[0].use_smooth = True
+    picture = stage.render(tmp_path)
+    assert np.isfinite(picture).all()
+    assert picture[..., :3].mean() == pytest.approx(1, rel=0.05)
+
+
+def test_a_mesh_of_nothing_renders(tmp_path):
+    stage.scene()
+    stage.camera()
+    stage.link("Empty", bpy.data.meshes.new("Empty"))
+    stage.mesh("Points", [(0, 0, 0), (1, 0, 0)], [])
+    stage.link("Null", None)
+    stage.render(tmp_path)
+    assert not stage.problems()
+
+
+def test_three_million_triangles_render(tmp_path):
+    stage.scene(width=4, height=4, passes=1, samples=1)
+    stage.camera((0, 0, 5))
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=1225, y_subdivisions=1225, size=20)
+    bpy.context.object.data.materials.append(stage.glowing())
+    assert stage.render(tmp_path)[..., :3].mean() > 0.5
+
+
+def test_a_missing_image_is_named_and_the_render_goes_on(tmp_path):
+    stage.scene()
+    stage.camera((0, 0, 5))
+    material = stage.glowing("Picture")
+    tree = material.node_tree
+    texture = tree.nodes.new("ShaderNodeTexImage")
+    texture.image = bpy.data.images.new("Lost", 4, 4)
+    texture.image.source = "FILE"
+    texture.image.filepath = str(tmp_path / "nowhere.png")
+    texture.image.reload()
+    tree.links.new(texture.outputs["Color"], next(n for n in tree.nodes if n.type == "EMISSION").inputs["Color"])
+    stage.plane(size=20, material=material)
+    picture = stage.render(tmp_path)[..., :3].mean((0, 1))
+    assert picture[0] > 0.8 and picture[2] > 0.8 and picture[1] < 0.1, "magenta, as in Cycles"
+    assert any("Lost" in entry or "Picture" in entry for entry in stage.problems()), stage.problems()
+
+
+def test_a_material_without_nodes_shows_its_colour(tmp_path):
+    stage.scene(passes=4, samples=8)
+    stage.camera((0, 0, 5))
+    stage.world()
+    material = bpy.data.materials.new("Plain")
+    material.use_nodes = False
+    material.diffuse_color = (0.2, 0.5, 0.8, 1)
+    material.specular_intensity = 0.0
+    stage.plane(size=100, material=material)
+    picture = stage.render(tmp_path)[..., :3].mean((0, 1))
+    assert picture[0] < picture[1] < picture[2]
+
+
+def test_a_node_cycle_through_groups_ends(tmp_path):
+    stage.scene()
+    stage.camera((0, 0, 5))
+    group = bpy.data.node_groups.new("Round", "ShaderNodeTree")
+    group.interface.new_socket("Out", in_out="OUTPUT", socket_type="NodeSocketColor")
+    group.interface.new_socket("In", in_out="INPUT", socket_type="NodeSocketColor")
+    inside, outside = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+    group.links.new(inside.outputs[0], outside.inputs[0])
+    material = stage.glowing("Cyclic")
+    tree = material.node_tree
+    nodes = [tree.nodes.new("ShaderNodeGroup") for _ in range(2)]
+    for node in nodes:
+        node.node_tree = group
+    tree.links.new(nodes[0].outputs[0], nodes[1].inputs[0])
+    tree.links.new(nodes[1].outputs[0], nodes[0].inputs[0])
+    tree.links.new(nodes[1].outputs[0], next(n for n in tree.nodes if n.type == "EMISSION").inputs["Color"])
+    stage.plane(size=20, material=material)
+    assert np.isfinite(stage.render(tmp_path)).all()
+
+
+@pytest.mark.parametrize("scale", [(0, 0, 0), (1, 1, 0), (1e-30, 1e-30, 1e-30)])
+def test_objects_scaled_to_nothing_are_left_out_and_named(scale, tmp_path):
+    stage.scene()
+    stage.camera((0, 0, 5))
+    stage.plane("Squashed", size=20, material=stage.glowing()).scale = scale
+    stage.plane("Whole", size=0.1, location=(50, 0, 0), material=stage.glowing("Other"))
+    assert np.isfinite(stage.render(tmp_path)).all()
+    assert any("Squashed" in entry for entry in stage.problems()), stage.problems()
+
+
+def test_a_matrix_that_is_not_finite_is_left_out_and_named(tmp_path):
+    stage.scene()
+    stage.camera((0, 0, 5))
+    stage.plane("Lost", material=stage.glowing()).location.x = float("nan")
+    assert np.isfinite(stage.render(tmp_path)).all()
+    assert any("Lost" in entry for entry in stage.problems()), stage.problems()
+
+
+def test_an_absurd_resolution_is_refused_with_the_memory_it_takes(monkeypatch):
+    scene = stage.scene(width=20_000, height=20_000)
+    stage.camera()
+    from opal_kernels import memory
+
+    monkeypatch.setattr(memory, "available_bytes", lambda: 16 * 2**30)
+    with refused(r"20000 x 20000 pixels would take [0-9.]+ GB"):
+        bpy.ops.render.render()
+    assert scene.render.resolution_x == 20_000
+
+
+def test_a_locked_spectral_path_is_a_sentence_and_the_picture_stands(tmp_path):
+    scene = stage.scene()
+    stage.camera()
+    stage.world()
+    blocked = tmp_path / "file"
+    blocked.write_text("not a folder")
+    scene.opal.use_spectral_output = True
+    scene.opal.spectral_path = str(blocked / "spectra.exr")
+    assert stage.render(tmp_path)[..., :3].mean() > 0.5
+    assert any("cannot be written" in entry for entry in stage.problems()), stage.problems()
+
+
+def test_a_locked_output_path_is_an_error_and_no_crash(tmp_path):
+    scene = stage.scene()
+    stage.camera()
+    blocked = tmp_path / "file"
+    blocked.write_text("not a folder")
+    scene.render.filepath = str(blocked / "picture.png")
+    with refused("."):
+        bpy.ops.render.render(write_still=True)
+
+
+def test_a_gem_of_an_impossible_index_written_by_a_script_still_renders(tmp_path):
+    stage.scene()
+    stage.camera((0, 0, 5))
+    stage.world()
+    material = stage.matte("Stone")
+    material.opal.kind = "GEM"
+    material.opal.gem.species = "CUSTOM"
+    material.opal.gem["sellmeier_b"] = (-50.0, 0.0, 0.0)  # past the property's own check
+    bpy.ops.mesh.primitive_uv_sphere_add()
+    bpy.context.object.data.materials.append(material)
+    assert np.isfinite(stage.render(tmp_path)).all()
