@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from . import engine, panels, properties, report
+from . import engine, media_panels, panels, properties, report
 
-_MODULES = (properties, engine, panels)
+_MODULES = (properties, engine, panels, media_panels)
 
 
 def register() -> None:

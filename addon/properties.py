@@ -17,7 +17,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import presets
+from . import media_properties, presets
 
 # Diamond, which a new gem starts as: Peter 1923 as in the species table, and a Cauchy formula through its F and C lines.
 _DIAMOND_B, _DIAMOND_C = (4.3356, 0.3306, 0.0), (0.011236, 0.030625, 0.0)
@@ -331,13 +331,23 @@ class OpalMaterialProperties(bpy.types.PropertyGroup):
         items=(
             ("SURFACE", "Surface", "What the material's node tree says"),
             ("GEM", "Gem", "A transparent body that splits and absorbs light: a stone, glass or a liquid"),
+            ("MEDIUM", "Medium", "Fills a closed body with fog, smoke or milk"),
+            ("RAINBOW", "Rainbow", "Fills a closed body with water drops, which show a bow opposite the sun"),
         ),
         default="SURFACE",
     )
     gem: PointerProperty(type=OpalGemProperties, name="Gem")
+    medium: PointerProperty(type=media_properties.OpalMediumProperties, name="Medium")
+    rainbow: PointerProperty(type=media_properties.OpalRainbowProperties, name="Rainbow")
 
 
-CLASSES = (OpalSceneProperties, OpalViewLayerProperties, OpalGemProperties, OpalMaterialProperties)
+CLASSES = (
+    OpalSceneProperties,
+    OpalViewLayerProperties,
+    OpalGemProperties,
+    *media_properties.CLASSES,
+    OpalMaterialProperties,
+)
 _OWNERS = (
     (bpy.types.Scene, OpalSceneProperties),
     (bpy.types.ViewLayer, OpalViewLayerProperties),

@@ -12,6 +12,7 @@ from opal_kernels.scene import Scene
 
 from .. import presets
 from ..report import Report
+from . import media
 
 DEFAULT_GREY = -1  # what the kernels take for a face without a material
 
@@ -46,6 +47,8 @@ class Materials:
         settings = material.opal
         if settings.kind == "GEM":
             return self._add_gem(material.name, settings.gem)
+        if settings.kind in {"MEDIUM", "RAINBOW"}:
+            return self._add_filling(material.name, settings)
         from ..nodes import compile_material  # the node readers are only loaded for a render
 
         compiled = compile_material(material, self._context)
@@ -59,6 +62,17 @@ class Materials:
         if compiled.transparent_shadow:
             flags |= MaterialFlag.TRANSPARENT_SHADOW
         return self._scene.add_material(compiled, flags=flags)
+
+    def _add_filling(self, name: str, settings: Any) -> int:
+        try:
+            if settings.kind == "MEDIUM":
+                medium = media.add_medium(self._scene, settings.medium)
+            else:
+                medium = media.add_rainbow(self._scene, settings.rainbow)
+        except ValueError as error:
+            self._report.add(name, f"{error} The body is rendered empty.")
+            medium = -1
+        return self._scene.add_material(flags=MaterialFlag.NO_SURFACE, medium=medium)
 
     def _add_gem(self, name: str, gem: Any) -> int:
         index, absorption = gem_spectra(gem)

@@ -158,7 +158,7 @@ class CameraPath {
     // Depth limits hold what is rough; between mirrors and in gems roulette alone ends a path, or they would darken.
     const bool may_go_on = rough_bounces_ < uint32_t(std::max(0, settings_.max_depth));
     if (surface_.has_smooth_lobe) {
-      if (may_go_on || bounces_ == 0) sample_direct(dimension);
+      sample_direct(dimension);
       if (gathers()) gather();
     }
 
@@ -178,10 +178,8 @@ class CameraPath {
     }
     const EventClass event = classify(surface_, sample, w_, Transport::Radiance, sampler_.get1d(dimension + kDimSpare));
     const bool specular = (sample.scattering & kScatterSpecular) != 0;
-    if (!specular && !may_go_on) {
-      alive_ = false;
-      return;
-    }
+    // The last bounce allowed still looks for lamps: that ray is next-event estimation's other half.
+    if (!specular && !may_go_on) final_ray_ = true;
     if (event == EventClass::Rough && !camera_goes_on_after_rough(settings_.photons_carry)) {
       // Photons bring the rest, but for direct light, of which this ray is next-event estimation's other half.
       if (settings_.photons_carry != OPAL_CARRY_INDIRECT) {
@@ -332,7 +330,7 @@ class CameraPath {
     const uint32_t dimension = bounce_dimension(events_, 0);
     const bool may_go_on = rough_bounces_ < uint32_t(std::max(0, settings_.max_depth));
     if (!here.emission.is_zero()) add_emitted(here, t_end);
-    if (here.scatters() && (may_go_on || bounces_ == 0)) gather_along(here, t_end, dimension);
+    if (here.scatters() && !final_ray_) gather_along(here, t_end, dimension);
 
     const float sigma = here.extinction[0];
     const float t = sigma > 0 ? -std::log1p(-sampler_.get1d(dimension + kDimMedium)) / sigma : kInfinity;
@@ -342,10 +340,11 @@ class CameraPath {
       else if (sigma > 0) alive_ = false;
       return !alive_;
     }
-    if (!may_go_on || !(here.scattering[0] > 0)) {
+    if (final_ray_ || !(here.scattering[0] > 0)) {
       alive_ = false;
       return true;
     }
+    final_ray_ = !may_go_on;
 
     const GatherDistance gathered(scene_, ray_, t_end, here.extinction.average());
     const Spectrum through = transmittance_over(here.extinction, t);
