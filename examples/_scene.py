@@ -58,6 +58,34 @@ def stone(name: str, cut, width: float, material: bpy.types.Material) -> bpy.typ
     return mesh(name, solid.vertices, solid.faces, material)
 
 
+def sphere(name: str, centre: Sequence[float], radius: float, material: bpy.types.Material) -> bpy.types.Object:
+    """A smooth ball of 64 × 128 faces; so fine that its shading normals and its surface part by less than a hundredth of a radian."""
+    rings, segments = 64, 128
+    vertices = [(0.0, 0.0, radius)]
+    for i in range(1, rings):
+        polar = math.pi * i / rings
+        for j in range(segments):
+            azimuth = math.tau * j / segments
+            vertices.append((radius * math.sin(polar) * math.cos(azimuth), radius * math.sin(polar) * math.sin(azimuth), radius * math.cos(polar)))
+    vertices.append((0.0, 0.0, -radius))
+    last = len(vertices) - 1
+    faces = [(0, 1 + j, 1 + (j + 1) % segments) for j in range(segments)]
+    for i in range(rings - 2):
+        for j in range(segments):
+            a, b = 1 + i * segments + j, 1 + i * segments + (j + 1) % segments
+            faces.append((a, a + segments, b + segments, b))
+    faces += [(last, last - segments + (j + 1) % segments, last - segments + j) for j in range(segments)]
+    obj = mesh(name, vertices, faces, material, smooth=True)
+    obj.location = centre
+    return obj
+
+
+def box(name: str, low: Sequence[float], high: Sequence[float], material: bpy.types.Material) -> bpy.types.Object:
+    """A box from its lowest to its highest corner."""
+    vertices = [(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
+    return mesh(name, vertices, [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)], material)
+
+
 def rest_on_facet(obj: bpy.types.Object, index: int, place: Sequence[float], facing: float, gap: float = 2e-6) -> None:
     """Lay an object on a table top, on one of its faces.
 
@@ -118,6 +146,19 @@ def matte(name: str, colour: Sequence[float]) -> bpy.types.Material:
     return material
 
 
+def checker(name: str, first: Sequence[float], second: Sequence[float], tiles: float) -> bpy.types.Material:
+    """A Lambertian checkerboard of this many tiles a metre, by the object's own coordinates."""
+    material = matte(name, first)
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    pattern, coordinates = nodes.new("ShaderNodeTexChecker"), nodes.new("ShaderNodeTexCoord")
+    pattern.inputs["Color1"].default_value, pattern.inputs["Color2"].default_value = (*first, 1.0), (*second, 1.0)
+    pattern.inputs["Scale"].default_value = tiles
+    links.new(coordinates.outputs["Object"], pattern.inputs["Vector"])
+    shader = next(node for node in nodes if node.type == "BSDF_DIFFUSE")
+    links.new(pattern.outputs["Color"], shader.inputs["Color"])
+    return material
+
+
 # Index at the D line and colour in transmission of the glass that stands for each species where the engine is not Opal.
 _PLAIN_GLASS = {
     "DIAMOND": (2.417, (1.0, 1.0, 1.0)),
@@ -133,7 +174,7 @@ _PLAIN_GLASS = {
 def gem(name: str, species: str, **settings: object) -> bpy.types.Material:
     """A gem of one of Opal's species; settings go to `material.opal.gem`."""
     material = _with_nodes(name)
-    index, colour = _PLAIN_GLASS.get(species, (1.5, (1.0, 1.0, 1.0)))
+    index, colour = _PLAIN_GLASS.get(species, (settings.get("cauchy_b", 1.5), (1.0, 1.0, 1.0)))
     nodes, links = material.node_tree.nodes, material.node_tree.links
     nodes.clear()
     shader, output = nodes.new("ShaderNodeBsdfGlass"), nodes.new("ShaderNodeOutputMaterial")
@@ -147,6 +188,17 @@ def gem(name: str, species: str, **settings: object) -> bpy.types.Material:
         for key, value in settings.items():
             setattr(material.opal.gem, key, value)
     return material
+
+
+def glass(name: str, index: float, dispersion: float = 0.0, colour: Sequence[float] = (1.0, 1.0, 1.0), depth: float = 0.01) -> bpy.types.Material:
+    """A transparent body by Cauchy's formula n = index + dispersion/λ² (µm²); white light becomes `colour` in `depth` metres of it."""
+    return gem(name, "CUSTOM", dispersion="CAUCHY", cauchy_b=index, cauchy_c=dispersion, absorption_color=colour, absorption_depth=depth)
+
+
+def limit(scene: bpy.types.Scene, passes: int, photons: int, seconds: float = 170.0) -> None:
+    """Passes and photons a pass of Opal, and the time after which the render ends at the latest; nothing where the engine is not there."""
+    if hasattr(scene, "opal"):
+        scene.opal.passes, scene.opal.photons_per_pass, scene.opal.time_limit = passes, photons, seconds
 
 
 def _with_nodes(name: str) -> bpy.types.Material:

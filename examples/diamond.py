@@ -28,7 +28,7 @@ def build() -> bpy.types.Scene:
     cut = round_brilliant()
     diamond = _scene.stone("Diamond", cut, WIDTH, _scene.gem("Diamond", "DIAMOND"))
     _scene.rest_on_facet(diamond, cut.names.index("main"), (0.0, 0.0), facing=math.radians(-75.0))
-    _scene.stage(0.5, _scene.surface("Table", (0.24, 0.27, 0.32), roughness=0.6, specular=0.1), depth=0.10, wall=0.15)
+    _scene.stage(0.5, _scene.surface("Table", (0.13, 0.14, 0.16), roughness=0.6, specular=0.1), depth=0.10, wall=0.15)
     _scene.lamp(
         "Lamp",
         "SPOT",
@@ -39,12 +39,10 @@ def build() -> bpy.types.Scene:
         spot_size=math.radians(1.5),
         spot_blend=0.15,
     )
-    _scene.hdri(_scene.studio_light("interior"), 0.14, math.radians(-60.0))
+    _scene.hdri(_scene.studio_light("interior"), 0.30, math.radians(-60.0))
     _scene.camera((0.006, -0.062, 0.038), (-0.0008, -0.0022, 0.0010), 98.0, fstop=22.0, focus=(0.0, -0.002, 0.003))
     scene.render.resolution_x, scene.render.resolution_y = 960, 640
-    if hasattr(scene, "opal"):
-        scene.opal.passes, scene.opal.photons_per_pass = 256, 400_000
-        scene.opal.time_limit = 170.0
+    _scene.limit(scene, 256, 400_000)
     return scene
 
 

@@ -58,9 +58,7 @@ def build() -> bpy.types.Scene:
     _scene.lamp("Window", "AREA", (0.10, 0.35, 0.30), (0.0, 0.0, 0.0), 0.06, shape="RECTANGLE", size=0.30, size_y=0.12)
     _scene.camera((0.050, -0.24, 0.27), (0.026, -0.042, 0.0), 60.0, fstop=5.6, focus=(0.0, -0.005, 0.01))
     scene.render.resolution_x, scene.render.resolution_y = 960, 640
-    if hasattr(scene, "opal"):
-        scene.opal.passes, scene.opal.photons_per_pass = 256, 400_000
-        scene.opal.time_limit = 170.0
+    _scene.limit(scene, 256, 400_000)
     return scene
 
 

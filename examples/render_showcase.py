@@ -40,8 +40,7 @@ def build() -> bpy.types.Scene:
     _scene.hdri(_scene.studio_light("interior"), 0.12, math.radians(-60.0))
     _scene.camera((0.006, -0.080, 0.062), (0.0010, 0.0008, 0.0012), 104.0, fstop=16.0, focus=(0.0, -0.004, 0.002))
     scene.render.resolution_x, scene.render.resolution_y = 720, 480
-    if hasattr(scene, "opal"):
-        scene.opal.passes, scene.opal.photons_per_pass, scene.opal.time_limit = 256, 400_000, TIME_LIMIT
+    _scene.limit(scene, 256, 400_000, TIME_LIMIT)
     return scene
 
 
