@@ -15,7 +15,7 @@ from .context import CompiledProgram, NodeContext, Problem
 from .flags import flags_of
 from .operations import Op
 from .program import ONE, ZERO, ProgramBuilder, Value, constant
-from .tree import Frame, source_of
+from .tree import Frame
 
 _TARGET = "CYCLES"  # an output marked for Cycles is meant for us as well
 
@@ -108,10 +108,7 @@ def compile_light_nodes(light: Any, context: NodeContext) -> tuple[tuple[float, 
 
 
 def _shade(compiler: Compiler, frame: Frame, output: Any) -> None:
-    try:
-        compiler.shade(frame, output.inputs["Surface"])
-    except RecursionError:
-        compiler.problem("", "The node tree is too deep to be read; what was read so far is shown.")
+    compiler.shade(frame, output.inputs["Surface"])
 
 
 def _without_nodes(builder: ProgramBuilder, material: Any) -> None:
@@ -132,7 +129,7 @@ def _without_nodes(builder: ProgramBuilder, material: Any) -> None:
 def _displaced_normal(compiler: Compiler, frame: Frame, output: Any, material: Any) -> Value | None:
     """Displacement as bump: the normal that shaders take by default, or None."""
     socket = output.inputs["Displacement"]
-    source = source_of(frame, socket)
+    source = compiler.source(frame, socket)
     if source.node is None:
         return None
     if source.node.bl_idname != "ShaderNodeDisplacement":

@@ -15,7 +15,7 @@ from .context import NodeContext, Problem
 from .operations import Op
 from .program import ONE, ZERO, Input, ProgramBuilder, Table, Value, constant
 from .registry import SHADER_READERS, VALUE_READERS
-from .tree import EndlessGroups, Frame, Source, source_of
+from .tree import EndlessGroups, Frame, Links, Source, source_of
 
 _MIX, _ADD = "ShaderNodeMixShader", "ShaderNodeAddShader"
 
@@ -105,6 +105,7 @@ class Compiler:
         self.default_normal: Value | None = None
         self._outputs: dict[tuple, dict[str, Value]] = {}
         self._open: set[tuple] = set()
+        self._links = Links()
 
     def problem(self, node: str, message: str) -> None:
         """Adds a problem unless it is known."""
@@ -125,9 +126,13 @@ class Compiler:
             return None
         return self._value(source, socket)
 
+    def source(self, frame: Frame, socket: Any) -> Source:
+        """The node that computes an input."""
+        return self._source(frame, socket)
+
     def _source(self, frame: Frame, socket: Any) -> Source:
         try:
-            return source_of(frame, socket)
+            return source_of(frame, socket, self._links)
         except EndlessGroups as group:
             self.problem(str(group), "This group contains itself; it is left out.")
             return Source(frame, None, socket)
@@ -142,30 +147,37 @@ class Compiler:
         return _convert(self.builder, value, source.socket.type, socket.type)
 
     def _outputs_of(self, source: Source) -> dict[str, Value]:
-        node = source.node
-        key = (source.frame.key, node.as_pointer())
-        if key in self._outputs:
-            return self._outputs[key]
-        if key in self._open:
-            self.problem(node.name, "The links form a ring here; it is cut.")
-            return {}
-        view = NodeView(self, source.frame, node)
-        reader = VALUE_READERS.get(node.bl_idname)
+        """What a node gives. Everything upstream is read first, without recursion, for chains of any length."""
+        stack = [(source, False)]
+        while stack:
+            at, upstream_read = stack.pop()
+            key = _node_key(at)
+            if key in self._outputs:
+                continue
+            if upstream_read:
+                self._outputs[key] = self._read(at)
+                self._open.discard(key)
+            elif key in self._open:
+                self.problem(at.node.name, "The links form a ring here; it is cut.")
+            else:
+                self._open.add(key)
+                stack.append((at, True))
+                linked = (s for s in at.node.inputs if s.enabled and s.is_linked and s.type != "SHADER")
+                upstream = (self._source(at.frame, s) for s in linked)
+                stack.extend((s, False) for s in upstream if s.node is not None)
+        return self._outputs.get(_node_key(source), {})
+
+    def _read(self, source: Source) -> dict[str, Value]:
+        view = NodeView(self, source.frame, source.node)
+        reader = VALUE_READERS.get(source.node.bl_idname)
         if reader is None:
-            view.problem(f"Opal does not read {node.bl_label} nodes; what it is linked to keeps its own value.")
-            self._outputs[key] = {}
+            view.problem(f"Opal does not read {source.node.bl_label} nodes; what it is linked to keeps its own value.")
             return {}
-        self._open.add(key)
-        try:
-            outputs = reader(view)
-        finally:
-            self._open.discard(key)
-        self._outputs[key] = outputs
-        return outputs
+        return reader(view)
 
     # ---- Shaders ----
 
-    def shade(self, frame: Frame, socket: Any, keep_order: bool = False) -> None:
+    def shade(self, frame: Frame, socket: Any) -> None:
         """Emits the lobes of everything that reaches a shader input."""
         first = self._source(frame, socket)
         if first.node is None:

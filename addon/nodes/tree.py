@@ -46,7 +46,25 @@ class EndlessGroups(Exception):
     """A group contains itself."""
 
 
-def source_of(frame: Frame, socket: Any) -> Source:
+class Links:
+    """The live link into each input, by tree: Blender's own `socket.links` walks through every link each time."""
+
+    def __init__(self) -> None:
+        self._trees: dict[int, dict[int, Any]] = {}
+
+    def into(self, socket: Any) -> Any:
+        """The link into an input, or None."""
+        if not socket.is_linked:
+            return None
+        tree = socket.id_data
+        key = tree.as_pointer()
+        if key not in self._trees:
+            live = (link for link in tree.links if link.is_valid and not link.is_muted)
+            self._trees[key] = {link.to_socket.as_pointer(): link for link in live}
+        return self._trees[key].get(socket.as_pointer())
+
+
+def source_of(frame: Frame, socket: Any, links: Links) -> Source:
     """Follows an input socket to the node that computes it.
 
     Parameters
@@ -55,6 +73,8 @@ def source_of(frame: Frame, socket: Any) -> Source:
         Where the socket's node is.
     socket : NodeSocket
         An input.
+    links : Links
+        Remembers links between calls, while the trees stay as they are.
 
     Raises
     ------
@@ -63,7 +83,7 @@ def source_of(frame: Frame, socket: Any) -> Source:
     """
     seen: set[tuple] = set()
     while True:
-        link = _link_of(socket)
+        link = links.into(socket)
         if link is None:
             return Source(frame, None, socket)
         node, output = link.from_node, link.from_socket
@@ -95,20 +115,6 @@ def source_of(frame: Frame, socket: Any) -> Source:
             frame, socket = frame.parent, outer
         else:
             return Source(frame, node, output)
-
-
-def output_is_used(socket: Any) -> bool:
-    """Whether anything is linked to an output."""
-    return socket.is_linked
-
-
-def _link_of(socket: Any) -> Any:
-    if not socket.is_linked:
-        return None
-    for link in socket.links:
-        if link.is_valid and not link.is_muted:
-            return link
-    return None
 
 
 def _passed_through(node: Any, output: Any) -> Any:

@@ -161,7 +161,7 @@ def run_program(scene, compiled, points, hits=None, ray_length=1.0):
     function.restype = ctypes.c_int32
     float_p, int_p = ctypes.POINTER(ctypes.c_float), ctypes.POINTER(ctypes.c_int32)
     status = function(
-        ctypes.c_void_p(scene.handle if scene else None),
+        ctypes.c_void_p(scene.handle if scene is not None else None),
         ctypes.byref(structure),
         ctypes.c_int64(n),
         points.ctypes.data_as(float_p),
