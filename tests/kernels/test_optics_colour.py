@@ -98,9 +98,7 @@ def test_the_basis_round_trips_exactly():
 
 def test_products_of_reflectances_behave_like_products_of_rgb():
     basis, unit = uplift.basis(), np.eye(3)
-    error = [
-        colour.rec709(colour.white() * basis[i] * basis[j]) - (unit[i] if i == j else 0) for i in range(3) for j in range(3)
-    ]
+    error = [colour.rec709(colour.white() * basis[i] * basis[j]) - (unit[i] if i == j else 0) for i in range(3) for j in range(3)]
     assert np.sqrt(np.mean(np.square(error))) < 0.02  # Mallett and Yuksel's own table has 0.045
     assert np.abs(error).max() < 0.03
 
@@ -111,7 +109,7 @@ COLOURS = [(0.8, 0.1, 0.05), (0.18, 0.18, 0.18), (0.02, 0.3, 0.9), (0.5, 0.9, 0.
 @pytest.mark.parametrize("rgb", COLOURS)
 def test_the_smooth_fit_round_trips(rgb):
     spectrum = uplift.smooth_reflectance(rgb)
-    assert 0 <= spectrum.min() and spectrum.max() <= 1
+    assert spectrum.min() >= 0 and spectrum.max() <= 1
     np.testing.assert_allclose(colour.rec709(spectrum * colour.white()), rgb, atol=1.1e-4)
 
 

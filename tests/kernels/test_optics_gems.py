@@ -156,13 +156,16 @@ def test_fresnel_reflectances(n, degrees, r_s, r_p):
 
 
 @pytest.mark.parametrize(
-    ("n", "degrees", "r"), [(1.5, 85, 0.612800), (2.4173, 60, 0.211295), (2.4173, 85, 0.621700), (1.333, 60, 0.059691), (1.333, 85, 0.583523)]
+    ("n", "degrees", "r"),
+    [(1.5, 85, 0.612800), (2.4173, 60, 0.211295), (2.4173, 85, 0.621700), (1.333, 60, 0.059691), (1.333, 85, 0.583523)],
 )
 def test_unpolarised_reflectances(n, degrees, r):
     assert fresnel.reflectance(np.cos(np.radians(degrees)), n) == pytest.approx(r, abs=1e-6)
 
 
-@pytest.mark.parametrize(("n", "external", "internal"), [(1.333, 0.066406, 0.474591), (1.5, 0.091778, 0.596346), (2.4173, 0.212223, 0.865184)])
+@pytest.mark.parametrize(
+    ("n", "external", "internal"), [(1.333, 0.066406, 0.474591), (1.5, 0.091778, 0.596346), (2.4173, 0.212223, 0.865184)]
+)
 def test_diffuse_reflectances(n, external, internal):
     assert fresnel.diffuse_reflectance(n) == pytest.approx(external, abs=2e-6)
     assert fresnel.diffuse_reflectance(1 / n) == pytest.approx(internal, abs=2e-5)

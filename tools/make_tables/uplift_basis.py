@@ -69,11 +69,11 @@ def solve(smoothness: float = SMOOTHNESS) -> np.ndarray:
         bend = coefficients @ second.T
         value = (pair_weight * pairs**2).sum() + (triple_weight * triples**2).sum() + bend_weight * (bend**2).sum()
         gradient = np.zeros_like(basis)
-        for (i, j), weight, error in zip(PAIRS, pair_weight, pairs):
+        for (i, j), weight, error in zip(PAIRS, pair_weight, pairs, strict=True):
             slope = 2 * weight * (error @ film)
             gradient[i] += slope * basis[j]
             gradient[j] += slope * basis[i]
-        for (i, j, k), weight, error in zip(TRIPLES, triple_weight, triples):
+        for (i, j, k), weight, error in zip(TRIPLES, triple_weight, triples, strict=True):
             slope = 2 * weight * (error @ film)
             gradient[i] += slope * basis[j] * basis[k]
             gradient[j] += slope * basis[i] * basis[k]

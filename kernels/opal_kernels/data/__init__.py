@@ -6,7 +6,7 @@ Tables are read on first use, kept, and handed out read-only: copy before changi
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +14,7 @@ import numpy as np
 FOLDER = Path(__file__).resolve().parent
 
 
-@lru_cache(maxsize=None)
+@cache
 def array(name: str) -> np.ndarray:
     """Return the array of ``<name>.npy``, read-only, float64.
 
@@ -28,7 +28,7 @@ def array(name: str) -> np.ndarray:
     return values
 
 
-@lru_cache(maxsize=None)
+@cache
 def columns(name: str) -> dict[str, np.ndarray]:
     """Return the columns of ``<name>.csv`` by their headings, read-only, float64.
 

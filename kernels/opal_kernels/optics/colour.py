@@ -9,7 +9,7 @@ Sources: CIE 018:2019 (observer), CIE S 014-2 (D65), ITU-R BT.709 (primaries), C
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 
@@ -37,7 +37,7 @@ def d65() -> np.ndarray:
     return data.array("d65")
 
 
-@lru_cache(maxsize=None)
+@cache
 def white() -> np.ndarray:
     """Return D65 scaled to luminance 1: the spectrum of a light of RGB (1, 1, 1), shape (471,)."""
     spectrum = d65() / xyz(d65())[1]
@@ -45,7 +45,7 @@ def white() -> np.ndarray:
     return spectrum
 
 
-@lru_cache(maxsize=None)
+@cache
 def rec709_from_xyz() -> np.ndarray:
     """Return the 3x3 matrix from XYZ to linear Rec.709 whose white is exactly the tabulated D65.
 
@@ -57,7 +57,7 @@ def rec709_from_xyz() -> np.ndarray:
     return np.linalg.inv(primaries * scale)
 
 
-@lru_cache(maxsize=None)
+@cache
 def rec709_response() -> np.ndarray:
     """Return linear Rec.709 per nm of a unit of spectral radiance, shape (3, 471): the film's three sensitivities."""
     response = rec709_from_xyz() @ observer() / observer()[1].sum()

@@ -43,8 +43,10 @@ def _spheres(m, x) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def _check(status: int) -> None:
     if status != 0:
-        raise MemoryError("out of memory in the Lorenz-Mie sums") if status == -2 else binding.OpalError(
-            "the Lorenz-Mie sums refused their arguments"
+        raise (
+            MemoryError("out of memory in the Lorenz-Mie sums")
+            if status == -2
+            else binding.OpalError("the Lorenz-Mie sums refused their arguments")
         )
 
 

@@ -12,7 +12,20 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 
 import numpy as np
 
-from opal_kernels.optics.rainbow import THEORIES, Cancelled, _mie_binding, airy, background, descartes, droplet, drops, geometric, mie, sun, water
+from opal_kernels.optics.rainbow import (
+    THEORIES,
+    Cancelled,
+    _mie_binding,
+    airy,
+    background,
+    descartes,
+    droplet,
+    drops,
+    geometric,
+    mie,
+    sun,
+    water,
+)
 
 _DEFAULT_SIZES = {"AIRY": 21, "DROPLET": 21, "DESCARTES": 1, "DESCARTES_SAMPLED": 1}
 _RAY_GRID = 36001  # 0.005 degrees
@@ -108,9 +121,7 @@ def _seen(evaluate: Theory, angles: np.ndarray, sun_radius: float, grid: int) ->
     return np.array([np.interp(angles, fine, row) for row in smoothed])
 
 
-def _theory(
-    name: str, radii: np.ndarray, weights: np.ndarray, n: float, nm: float, diffraction: bool, shape: droplet.Shape
-) -> Theory:
+def _theory(name: str, radii: np.ndarray, weights: np.ndarray, n: float, nm: float, diffraction: bool, shape: droplet.Shape) -> Theory:
     sizes = 2000 * np.pi * radii / nm
     share = weights * radii**2 / (weights * radii**2).sum()  # of the geometric cross-section
     if name == "MIE":

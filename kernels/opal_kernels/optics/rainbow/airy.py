@@ -10,7 +10,7 @@ term is the linear change of the amplitude across the wavefront, a quarter perio
 component and most of the parallel one, whose r changes sign near the caustic.
 
 Away from the caustic the cubic no longer holds: the mean over the supernumeraries drifts from that of the rays, by 6 per cent
-within five degrees. In tables it is led back to theirs (`ray_ratio`), and far away the order is its rays. Sources: Airy, Trans. Camb. Phil. Soc. 6
+within five degrees of the primary and by 20 within two of the secondary. In tables it is led back to theirs (`ray_ratio`), and far away the order is its rays. Sources: Airy, Trans. Camb. Phil. Soc. 6
 (1838) 379; van de Hulst 1957, 13.23; Konnen and de Boer, Appl. Opt. 18 (1979) 1961 (the parallel supernumeraries).
 """
 
@@ -102,9 +102,7 @@ class Drop:
         self._n = n
         self._bows = [k for k in background.BOWS if 1 < n < k + 1]
         self._densities = background.orders(n)
-        self._rays = sum(
-            self._densities[k] * (1 - _share(background.CENTRES, n, k) if k in self._bows else 1) for k in background.BOWS
-        )
+        self._rays = sum(self._densities[k] * (1 - _share(background.CENTRES, n, k) if k in self._bows else 1) for k in background.BOWS)
 
     def _airy(self, angles_rad: np.ndarray, sizes: np.ndarray, share: np.ndarray) -> np.ndarray:
         total = np.zeros((2, len(angles_rad)))
@@ -114,9 +112,8 @@ class Drop:
             if near.size == 0:
                 continue
             intensity = sum(part * bow(angles_rad[near], self._n, x, k) for part, x in zip(share, sizes, strict=True))
-            if k == 1:  # the secondary's few degrees are better left alone: there the rays themselves are 10 % low beside Mie
-                grid, ratio = ray_ratio(self._n, k)
-                intensity *= [np.interp(delta[near], grid, row, left=1.0) for row in ratio]
+            grid, ratio = ray_ratio(self._n, k)
+            intensity *= [np.interp(delta[near], grid, row, left=1.0) for row in ratio]
             total[:, near] += _share(angles_rad[near], self._n, k) * intensity
         return total
 

@@ -13,7 +13,6 @@ import numpy as np
 
 from opal_kernels.optics import fresnel
 
-
 _RINGS_END = np.radians(20)
 
 
@@ -140,7 +139,5 @@ def _bessel_j1(z: np.ndarray) -> np.ndarray:
     large = np.maximum(z, 3.0)
     s = 3 / large
     f = 0.79788456 + s * (1.56e-6 + s * (0.01659667 + s * (0.00017105 + s * (-0.00249511 + s * (0.00113653 - s * 0.00020033)))))
-    phase = -2.35619449 + s * (
-        0.12499612 + s * (0.0000565 + s * (-0.00637879 + s * (0.00074348 + s * (0.00079824 - s * 0.00029166))))
-    )
+    phase = -2.35619449 + s * (0.12499612 + s * (0.0000565 + s * (-0.00637879 + s * (0.00074348 + s * (0.00079824 - s * 0.00029166)))))
     return np.where(z < 3, small, f * np.cos(large + phase) / np.sqrt(large))
