@@ -191,6 +191,7 @@ class OPAL_VIEWLAYER_PT_passes(_OpalPanel):
         column.prop(layer.opal, "use_pass_direct")
         column.prop(layer.opal, "use_pass_indirect")
         column.prop(layer.opal, "use_pass_caustics")
+        column.prop(layer.opal, "use_pass_medium")
 
 
 class _MaterialPanel(_OpalPanel):

@@ -214,6 +214,9 @@ class OpalViewLayerProperties(bpy.types.PropertyGroup):
     use_pass_caustics: BoolProperty(
         name="Caustics", description="Keeps light that reached a diffuse surface through a gem or glass or off a mirror"
     )
+    use_pass_medium: BoolProperty(
+        name="Medium", description="Keeps light that a medium or a rainbow scattered or gave off towards the camera"
+    )
 
 
 class OpalGemProperties(bpy.types.PropertyGroup):

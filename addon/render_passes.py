@@ -41,6 +41,7 @@ TABLE = (
     RenderPass("opal.use_pass_direct", "Direct", "RGB", "COLOR", Pass.DIRECT),
     RenderPass("opal.use_pass_indirect", "Indirect", "RGB", "COLOR", Pass.INDIRECT),
     RenderPass("opal.use_pass_caustics", "Caustics", "RGB", "COLOR", Pass.CAUSTICS),
+    RenderPass("opal.use_pass_medium", "Medium", "RGB", "COLOR", Pass.MEDIUM),
 )
 
 

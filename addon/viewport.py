@@ -7,6 +7,7 @@ finished picture. The thread touches only the kernels' scene, never Blender's da
 
 from __future__ import annotations
 
+import os
 import threading
 from dataclasses import replace
 from typing import Any
@@ -106,7 +107,7 @@ class Viewport:
             self._engine.update_stats("", f"Error: {error}")
             return
         frame = settings.Frame(region.width, region.height, (0, 0, region.width, region.height))
-        wanted = settings.render_settings(scene, frame, preview=True)
+        wanted = replace(settings.render_settings(scene, frame, preview=True), threads=_threads(scene.render))
         key = (repr(camera), repr(wanted), scene.opal.passes)
         if key == self._shown:
             return
@@ -118,6 +119,11 @@ class Viewport:
         worker, self._worker = self._worker, None
         if worker is not None:
             worker.stop()
+
+
+def _threads(render: Any) -> int:
+    """All cores but one, which Blender's interface needs, unless the scene says how many."""
+    return settings.threads_of(render) or max(1, (os.cpu_count() or 2) - 1)
 
 
 def _only_cameras(depsgraph: Any) -> bool:

@@ -14,7 +14,7 @@ def all_passes():
     layer = bpy.context.view_layer
     for name in ("z", "normal", "position", "emit"):
         setattr(layer, f"use_pass_{name}", True)
-    for name in ("albedo", "direct", "indirect", "caustics"):
+    for name in ("albedo", "direct", "indirect", "caustics", "medium"):
         setattr(layer.opal, f"use_pass_{name}", True)
 
 
@@ -25,7 +25,7 @@ def test_geometry_passes_give_distance_normal_position_and_albedo(tmp_path):
     stage.plane(size=20, location=(0, 0, 1), material=stage.matte(color=(0.8, 0.4, 0.2)))
     all_passes()
     got = stage.render_passes(tmp_path)
-    assert set(got) == {"Combined", "Depth", "Normal", "Position", "Emission", "Albedo", "Direct", "Indirect", "Caustics"}
+    assert set(got) == {"Combined", "Depth", "Normal", "Position", "Emission", "Albedo", "Direct", "Indirect", "Caustics", "Medium"}
     center = (6, 8)
     assert got["Depth"][center] == pytest.approx(4.0, rel=2e-2)
     np.testing.assert_allclose(got["Normal"][center], (0, 0, 1), atol=1e-5)
@@ -41,10 +41,27 @@ def test_light_passes_add_up_to_the_picture(tmp_path):
     stage.plane("Glow", size=1, location=(0, 0, 1), material=stage.glowing(strength=3))
     all_passes()
     got = stage.render_passes(tmp_path)
-    parts = sum(got[name] for name in ("Emission", "Direct", "Indirect", "Caustics"))
+    parts = sum(got[name] for name in ("Emission", "Direct", "Indirect", "Caustics", "Medium"))
     np.testing.assert_allclose(parts, got["Combined"][..., :3], rtol=1e-4, atol=1e-5)
     assert np.sort(got["Emission"][..., 1].ravel())[-4:].mean() == pytest.approx(3.0, rel=0.05)
     assert got["Direct"].mean() > 10 * got["Caustics"].mean()
+
+
+def test_what_a_medium_scatters_has_a_pass_of_its_own(tmp_path):
+    stage.scene(passes=4, samples=4)
+    stage.camera((0, 0, 5))
+    stage.world()
+    material = stage.matte("Fog")
+    material.opal.kind = "MEDIUM"
+    material.opal.medium.extinction = 0.5
+    bpy.ops.mesh.primitive_cube_add(size=2)
+    bpy.context.object.data.materials.append(material)
+    all_passes()
+    got = stage.render_passes(tmp_path)
+    assert got["Medium"][6, 8].mean() > 0.1
+    assert not got["Medium"][0, 0].any()
+    parts = sum(got[name] for name in ("Emission", "Direct", "Indirect", "Caustics", "Medium"))
+    np.testing.assert_allclose(parts, got["Combined"][..., :3], rtol=1e-4, atol=1e-5)
 
 
 def test_border_renders_the_same_pixels_as_the_whole_frame(tmp_path):
