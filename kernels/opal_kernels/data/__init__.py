@@ -6,7 +6,7 @@ Tables are read on first use, kept, and handed out read-only: copy before changi
 
 from __future__ import annotations
 
-from functools import cache, lru_cache
+from functools import cache
 from pathlib import Path
 
 import numpy as np
