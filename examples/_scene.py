@@ -359,4 +359,4 @@ def run(build: Callable[[], bpy.types.Scene], name: str) -> None:
         scene.opal.passes = options.passes
     if options.save:
         bpy.ops.wm.save_as_mainfile(filepath=str(options.save.resolve()))
-    print(render(scene, options.output.resolve()))
+    print(render(scene, options.output.resolve()), flush=True)

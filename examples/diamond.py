@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A carat of diamond on a table: a round brilliant under a small lamp, in an evening room.
+"""A carat of diamond on a table: a round brilliant under a small lamp, in a dark studio.
 
 The stone lies as a loose brilliant does, on one of its pavilion mains, so that its table faces the camera. A lamp of 0.6 mm radius shines on
 nothing but the stone, through its crown; the pavilion turns the light round, and every facet it leaves by throws its own image of the lamp on
@@ -39,7 +39,7 @@ def build() -> bpy.types.Scene:
         spot_size=math.radians(1.5),
         spot_blend=0.15,
     )
-    _scene.hdri(_scene.studio_light("interior"), 0.30, math.radians(-60.0))
+    _scene.hdri(_scene.studio_light("studio"), 1.1, math.radians(150.0))
     _scene.camera((0.006, -0.062, 0.038), (-0.0008, -0.0022, 0.0010), 98.0, fstop=22.0, focus=(0.0, -0.002, 0.003))
     scene.render.resolution_x, scene.render.resolution_y = 960, 640
     _scene.limit(scene, 256, 400_000)

@@ -34,8 +34,8 @@ def build() -> bpy.types.Scene:
         shader.inputs["Emission Color"].default_value = (*colour, 1.0)
         shader.inputs["Emission Strength"].default_value = 3.0
         _scene.mesh(f"Pane {i}", [(x, 0.5, z), (x + 0.16, 0.5, z), (x + 0.16, 0.5, z + 0.16), (x, 0.5, z + 0.16)], [(0, 1, 2, 3)], pane)
-    _scene.hdri(_scene.studio_light("interior"), 0.25, math.radians(40.0))
-    _scene.camera((0.0, -0.30, 0.075), (0.0, 0.0, 0.021), 55.0, fstop=8.0)
+    _scene.hdri(_scene.studio_light("courtyard"), 0.12, math.radians(40.0))
+    _scene.camera((0.0, -0.30, 0.075), (0.0, 0.0, 0.021), 49.0, fstop=8.0)
     scene.render.resolution_x, scene.render.resolution_y = 960, 480
     _scene.limit(scene, 128, 300_000)
     return scene

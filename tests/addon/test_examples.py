@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every example builds its scene from nothing, and what lies on its table lies on it. Rendering them is `make render`'s business."""
+
+import importlib
+import math
+import sys
+from pathlib import Path
+
+import bpy
+import pytest
+
+EXAMPLES = Path(__file__).resolve().parent.parent.parent / "examples"
+NAMES = sorted(path.stem for path in EXAMPLES.glob("*.py") if not path.stem.startswith("_"))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def examples_on_the_path():
+    sys.path.insert(0, str(EXAMPLES))
+    yield
+    sys.path.remove(str(EXAMPLES))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_example_builds_a_scene_that_can_be_rendered(name):
+    scene = importlib.import_module(name).build()
+    assert scene.camera is not None
+    assert scene.world is not None
+    assert all(obj.data.materials and obj.data.materials[0] for obj in scene.objects if obj.type == "MESH")
+    assert 0.0 < scene.opal.time_limit <= 180.0, "an example is drawn in under three minutes"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_nothing_sinks_into_the_table(name):
+    scene = importlib.import_module(name).build()
+    bpy.context.view_layer.update()
+    for obj in scene.objects:
+        if obj.type == "MESH":
+            lowest = min((obj.matrix_world @ vertex.co).z for vertex in obj.data.vertices)
+            assert lowest >= -1e-7, f"{obj.name} reaches {1e3 * lowest:.4f} mm"
+
+
+def test_a_stone_lies_flat_on_its_facet_and_leans_where_it_is_told():
+    scene = importlib.import_module("_scene")
+    from opal_kernels.cuts import round_brilliant
+
+    scene.empty()
+    cut = round_brilliant()
+    stone = scene.stone("Stone", cut, 0.0065, scene.matte("Grey", (0.5, 0.5, 0.5)))
+    index = cut.names.index("main")
+    scene.rest_on_facet(stone, index, (0.001, 0.002), facing=math.radians(30.0), gap=0.0)
+    heights = [(stone.matrix_world @ stone.data.vertices[corner].co).z for corner in stone.data.polygons[index].vertices]
+    assert heights == pytest.approx([0.0] * len(heights), abs=1e-8)
+    axis = stone.matrix_world.to_3x3() @ stone.data.polygons[cut.names.index("table")].normal
+    assert math.atan2(axis.y, axis.x) == pytest.approx(math.radians(30.0), abs=1e-5)
+    # A main slopes 40.75°, so the table of a stone that lies on one leans by as much.
+    assert axis.z == pytest.approx(math.cos(math.radians(40.75)), abs=1e-5)
