@@ -205,12 +205,8 @@ class OpalViewLayerProperties(bpy.types.PropertyGroup):
     use_pass_albedo: BoolProperty(
         name="Albedo", description="Keeps the share of white light that surfaces send back, for denoisers and compositing"
     )
-    use_pass_direct: BoolProperty(
-        name="Direct", description="Keeps light that met one surface between its source and the camera"
-    )
-    use_pass_indirect: BoolProperty(
-        name="Indirect", description="Keeps light that met more than one surface, without caustics"
-    )
+    use_pass_direct: BoolProperty(name="Direct", description="Keeps light that met one surface between its source and the camera")
+    use_pass_indirect: BoolProperty(name="Indirect", description="Keeps light that met more than one surface, without caustics")
     use_pass_caustics: BoolProperty(
         name="Caustics", description="Keeps light that reached a diffuse surface through a gem or glass or off a mirror"
     )

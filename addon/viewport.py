@@ -100,9 +100,7 @@ class Viewport:
         scene = depsgraph.scene_eval
         found = report.of(depsgraph.scene)
         try:
-            camera = camera_from_view(
-                scene, context.space_data, context.region_data, region.width, region.height, found.add
-            )
+            camera = camera_from_view(scene, context.space_data, context.region_data, region.width, region.height, found.add)
         except ValueError as error:
             self._engine.update_stats("", f"Error: {error}")
             return
@@ -129,9 +127,7 @@ def _threads(render: Any) -> int:
 def _only_cameras(depsgraph: Any) -> bool:
     """Whether nothing but cameras, where they stand included, was changed."""
     changed = [update.id for update in depsgraph.updates]
-    return bool(changed) and all(
-        block.id_type == "CAMERA" or (block.id_type == "OBJECT" and block.type == "CAMERA") for block in changed
-    )
+    return bool(changed) and all(block.id_type == "CAMERA" or (block.id_type == "OBJECT" and block.type == "CAMERA") for block in changed)
 
 
 class _Worker:

@@ -158,9 +158,7 @@ class _LayerContext:
         self.layer = depsgraph.view_layer
         self.override = depsgraph.view_layer_eval.material_override
 
-    def look(
-        self, instance: Any, obj: Any, source: Any, parent: Any, mesh: Any, receiver_set: Callable[[Any], int]
-    ) -> _Look:
+    def look(self, instance: Any, obj: Any, source: Any, parent: Any, mesh: Any, receiver_set: Callable[[Any], int]) -> _Look:
         visibility = _ray_visibility(obj)
         if parent is not None:
             visibility &= _ray_visibility(parent)
@@ -214,15 +212,11 @@ def _note_unreadable(obj: Any, kind: str, problems: list[tuple[str, str]]) -> No
         problems.append((obj.name, sentence))
 
 
-def _note_singular(
-    look_rows: np.ndarray, used: np.ndarray, looks: list[_Look], problems: list[tuple[str, str]]
-) -> None:
+def _note_singular(look_rows: np.ndarray, used: np.ndarray, looks: list[_Look], problems: list[tuple[str, str]]) -> None:
     skipped = look_rows[(look_rows >= 0) & ~used]
     for number, count in zip(*np.unique(skipped, return_counts=True), strict=True):
         copies = "" if count == 1 else f" ({count} copies)"
-        problems.append(
-            (looks[number].name, f"is scaled to nothing or has a matrix that is not finite, and is left out{copies}")
-        )
+        problems.append((looks[number].name, f"is scaled to nothing or has a matrix that is not finite, and is left out{copies}"))
 
 
 def _group(
@@ -240,9 +234,7 @@ def _group(
     groups = group_of_look[look_rows[rows]] if len(rows) else np.empty(0, np.int32)
     order = np.argsort(groups, kind="stable")
     rows, groups = rows[order], groups[order]
-    per_look = np.array([(look.random, look.pass_index, *look.color, 0.0, 0.0) for look in looks], np.float32).reshape(
-        -1, 8
-    )
+    per_look = np.array([(look.random, look.pass_index, *look.color, 0.0, 0.0) for look in looks], np.float32).reshape(-1, 8)
     bounds = np.searchsorted(groups, np.arange(len(first_with) + 1))
     representatives = {group: looks[number] for number, group in reversed(list(enumerate(group_of_look)))}
     for group in range(len(first_with)):

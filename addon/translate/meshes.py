@@ -106,9 +106,7 @@ def read_mesh(mesh: Any, needs: MeshNeeds | None = None) -> MeshArrays | None:
     )
     polygon = _read(mesh.loop_triangle_polygons, "value", n_triangles, 1, np.int32)
     vertex = _attribute(mesh, ".corner_vert", 1, np.int32, "value")[corner]
-    arrays = MeshArrays(
-        positions=_attribute(mesh, "position", 3, np.float32, "vector"), triangles=vertex.reshape(n_triangles, 3)
-    )
+    arrays = MeshArrays(positions=_attribute(mesh, "position", 3, np.float32, "vector"), triangles=vertex.reshape(n_triangles, 3))
 
     if mesh.normals_domain == "POINT":
         arrays.corner_normals = _read(mesh.vertex_normals, "vector", n_vertices, 3, np.float32)[vertex]
@@ -145,9 +143,7 @@ def _render_uv_name(mesh: Any) -> str | None:
     return mesh.uv_layers[0].name if len(mesh.uv_layers) else None
 
 
-def _shader_attribute(
-    mesh: Any, name: str, corner: np.ndarray, polygon: np.ndarray, problems: list[str]
-) -> tuple[int, np.ndarray] | None:
+def _shader_attribute(mesh: Any, name: str, corner: np.ndarray, polygon: np.ndarray, problems: list[str]) -> tuple[int, np.ndarray] | None:
     """Domain and values of an attribute as float32, or None where the mesh has none of that name."""
     name = name or _render_uv_name(mesh)
     attribute = mesh.attributes.get(name) if name else None

@@ -14,7 +14,6 @@ import numpy as np
 from opal_kernels.scene import Scene
 
 from ..nodes.images import Images
-from ..nodes.images import Images
 from ..report import Report
 from .meshes import MeshNeeds
 

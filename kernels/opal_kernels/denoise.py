@@ -115,9 +115,7 @@ def _run(images: dict[bytes, np.ndarray], width: int, height: int, threads: int)
         filter_handle = api.oidnNewFilter(device, b"RT")
         if filter_handle:
             for name, pixels in images.items():
-                api.oidnSetSharedFilterImage(
-                    filter_handle, name, pixels.ctypes.data, _FORMAT_FLOAT3, width, height, 0, 0, 0
-                )
+                api.oidnSetSharedFilterImage(filter_handle, name, pixels.ctypes.data, _FORMAT_FLOAT3, width, height, 0, 0, 0)
             api.oidnSetFilterBool(filter_handle, b"hdr", True)
             api.oidnCommitFilter(filter_handle)
             api.oidnExecuteFilter(filter_handle)

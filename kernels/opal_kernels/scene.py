@@ -97,7 +97,7 @@ class Scene:
         self,
         program: Program | None = None,
         gem: Gem | None = None,
-        flags: MaterialFlag = MaterialFlag(0),
+        flags: int = 0,
         medium: int = -1,
     ) -> int:
         """Adds a material; see `binding.scene_add_material`."""
@@ -108,15 +108,13 @@ class Scene:
         index: int,
         program: Program | None = None,
         gem: Gem | None = None,
-        flags: MaterialFlag = MaterialFlag(0),
+        flags: int = 0,
         medium: int = -1,
     ) -> None:
         """Replaces a material; `commit` afterwards."""
         binding.scene_update_material(self.handle, index, program, gem, flags, medium)
 
-    def add_medium(
-        self, extinction: Any, albedo: Any = 1.0, phase: Phase | None = None, emission: Any = None
-    ) -> int:
+    def add_medium(self, extinction: Any, albedo: Any = 1.0, phase: Phase | None = None, emission: Any = None) -> int:
         """Adds a homogeneous medium from spectra.
 
         Parameters
@@ -147,9 +145,7 @@ class Scene:
         """Fills the world with a medium; -1 takes it away."""
         binding.scene_set_world_medium(self.handle, medium)
 
-    def add_gem(
-        self, index: Any, absorption: Any = None, roughness: float = 0.0, fresnel: int = 0, priority: int = 0
-    ) -> int:
+    def add_gem(self, index: Any, absorption: Any = None, roughness: float = 0.0, fresnel: int = 0, priority: int = 0) -> int:
         """Adds a dielectric from spectra.
 
         Parameters
@@ -167,9 +163,7 @@ class Scene:
         spectrum = np.full(471, index) if np.ndim(index) == 0 else index
         gem = Gem(self.add_spectrum(spectrum), -1, roughness, fresnel, priority)
         if absorption is not None:
-            gem.absorption_spectrum = self.add_spectrum(
-                np.full(471, absorption) if np.ndim(absorption) == 0 else absorption
-            )
+            gem.absorption_spectrum = self.add_spectrum(np.full(471, absorption) if np.ndim(absorption) == 0 else absorption)
         return self.add_material(gem=gem, flags=MaterialFlag.CASTER)
 
     # ---- Geometry ----

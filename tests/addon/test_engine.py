@@ -106,9 +106,7 @@ def test_progress_statistics_and_time_left_are_told(monkeypatch, tmp_path):
     final_render = stage.addon("final_render")
     told = []
     original = final_render._FinalRender._tell
-    monkeypatch.setattr(
-        final_render._FinalRender, "_tell", lambda self, *arguments: (told.append(arguments), original(self, *arguments))
-    )
+    monkeypatch.setattr(final_render._FinalRender, "_tell", lambda self, *arguments: (told.append(arguments), original(self, *arguments)))
     stage.render(tmp_path)
     assert {arguments[0] for arguments in told} <= {0, 1, 2} and len(told) >= 3
     assert all(0 <= done <= total for _, total, done, _ in told)

@@ -171,8 +171,7 @@ def test_geometry_nodes_instances_stay_instances():
     tree = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
     tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
     grid, cube, scatter, out = (
-        tree.nodes.new(name)
-        for name in ("GeometryNodeMeshGrid", "GeometryNodeMeshCube", "GeometryNodeInstanceOnPoints", "NodeGroupOutput")
+        tree.nodes.new(name) for name in ("GeometryNodeMeshGrid", "GeometryNodeMeshCube", "GeometryNodeInstanceOnPoints", "NodeGroupOutput")
     )
     grid.inputs["Vertices X"].default_value = grid.inputs["Vertices Y"].default_value = 7
     tree.links.new(grid.outputs["Mesh"], scatter.inputs["Points"])
@@ -275,5 +274,5 @@ def test_parented_and_animated_objects_are_where_blender_puts_them():
 def test_object_random_is_the_hash_that_cycles_shows():
     random = stage.addon("translate.instances").object_random
     values = [random(f"Object.{i:03d}") for i in range(200)]
-    assert 0 <= min(values) and max(values) <= 1
+    assert min(values) >= 0 and max(values) <= 1
     assert np.std(values) == pytest.approx(np.sqrt(1 / 12), rel=0.15)

@@ -10,13 +10,33 @@ import stage  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("opal")
 
-SCENE_NAMES = (
-    "passes samples_per_pass photons_per_pass photons_carry gather radius radius_shrink max_depth wavelengths denoise seed "
-    "time_limit noise_threshold"
-).split()
-GEM_NAMES = (
-    "species dispersion cauchy_b cauchy_c sellmeier_b sellmeier_c fresnel absorption_color absorption_depth roughness"
-).split()
+SCENE_NAMES = [
+    "passes",
+    "samples_per_pass",
+    "photons_per_pass",
+    "photons_carry",
+    "gather",
+    "radius",
+    "radius_shrink",
+    "max_depth",
+    "wavelengths",
+    "denoise",
+    "seed",
+    "time_limit",
+    "noise_threshold",
+]
+GEM_NAMES = [
+    "species",
+    "dispersion",
+    "cauchy_b",
+    "cauchy_c",
+    "sellmeier_b",
+    "sellmeier_c",
+    "fresnel",
+    "absorption_color",
+    "absorption_depth",
+    "roughness",
+]
 
 
 @pytest.fixture

@@ -47,4 +47,4 @@ def test_every_function_of_the_header_is_bound():
     exported = [line for line in HEADER.read_text().splitlines() if line.startswith("OPAL_EXPORT")]
     functions = {word for line in exported for word in line.replace("(", " ").replace("*", " ").split() if word in declared}
     functions = {name for name in functions if name not in binding.STRUCTURES} - {"opal_scene", "opal_render"}
-    assert functions == set(binding._SIGNATURES)
+    assert functions == set(binding.SIGNATURES)

@@ -153,7 +153,7 @@ def run_program(scene, compiled, points, hits=None, ray_length=1.0):
     n = len(points)
     emission = np.zeros((n, 3), np.float32)
     keep: list = []
-    structure = binding._program(compiled, keep)
+    structure = binding.program_struct(compiled, keep)
     points = np.ascontiguousarray(points, np.float32)
     hits = None if hits is None else np.ascontiguousarray(hits, np.int32)
     message = ctypes.create_string_buffer(256)
