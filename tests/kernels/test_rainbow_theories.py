@@ -261,6 +261,15 @@ def test_small_and_large_falling_drops_make_a_twinned_bow():
     assert 1.0 < top[200.0] - top[500.0] < 3.0
 
 
+@pytest.mark.parametrize("radius", [100.0, 500.0, 1000.0, 2500.0])
+@pytest.mark.parametrize("elevation", [0.0, 0.4, 1.2])
+def test_flat_drops_of_any_size_give_a_finite_table(radius, elevation):
+    angles = np.linspace(0, np.pi, 181)
+    for clock in (0.0, 0.8, np.pi / 2, 3.0):
+        p = rainbow.phase_function("DROPLET", radius, [550.0], angles, flattening=2.0, sun_elevation_rad=elevation, clock_rad=clock)
+        assert np.isfinite(p).all() and p.min() >= 0
+
+
 def test_falling_drops_have_their_axis_ratio():
     rows = table("drop_axis_ratio.csv")
     got = [droplet.axis_ratio(500 * d) for d in rows["diameter_mm"]]

@@ -13,7 +13,8 @@ whose factors are smooth functions of the angle from the caustic and are extrapo
 is the integral of the difference of the two rays' lever arms over the angle, which does not cancel as the paths themselves do.
 
 The drop is a spheroid of the axis ratio of falling drops (Beard and Chuang, J. Atmos. Sci. 44 (1987) 1509), its axis vertical.
-The light seen at one place of the bow is that of the rays in the plane of sun, drop and place; the slight turn of the plane of
+Drops flatter than about 0.85 have more caustics than one to a side; their bows are smeared out (they are washed out in the sky
+as well). The light seen at one place of the bow is that of the rays in the plane of sun, drop and place; the slight turn of the plane of
 incidence out of it is neglected (none at the bow's top, where twinned bows part). Reflection outside, light passed through and
 higher orders are those of a sphere.
 """
@@ -26,13 +27,14 @@ from functools import lru_cache
 import numpy as np
 
 from opal_kernels.optics import fresnel
-from opal_kernels.optics.rainbow import background
+from opal_kernels.optics.rainbow import background, geometric, sun
 from opal_kernels.optics.rainbow.airy_function import squares
 
 _RAYS = 1200
 _STEP = 2e-4  # between neighbours on the wavefront, in radii
 _CLOSE = np.radians(0.4)  # nearer than this to the caustic, fits replace differences
 _FIT_END = np.radians(4.0)
+_SMEAR = 0.15  # rad
 
 
 def axis_ratio(radius_um: float) -> float:
@@ -167,12 +169,17 @@ def fold(n: float, k: int, ratio: float, sun_elevation: float, clock: float) -> 
     lever = across @ np.cross(exit_point, centre, axis=0)
     factors = factors.reshape(2, 5, -1)[:, 0]
 
-    # The caustic: the turning point of the angle along the wavefront.
+    # The caustic: the turning point of the angle along the wavefront nearest to a sphere's, with the rays up to the next ones.
     slope = np.diff(angle)
     turns = np.flatnonzero(slope[1:] * slope[:-1] < 0) + 1
-    if len(turns) != 1:
+    if len(turns) == 0 or not 1 < n < k + 1:
         return None
-    turn = int(turns[0])
+    chosen = int(np.argmin(np.abs(np.abs(entry[turns]) / reach - np.sin(geometric.caustic_incidence(n, k)))))
+    branch = slice(turns[chosen - 1] + 1 if chosen > 0 else 0, turns[chosen + 1] if chosen + 1 < len(turns) else None)
+    turn = int(turns[chosen]) - branch.start
+    entry, angle, jacobian, lever, factors = entry[branch], angle[branch], jacobian[branch], lever[branch], factors[:, branch]
+    if turn < 10 or turn > len(entry) - 10:
+        return None
     near = slice(turn - 3, turn + 4)
     parabola = np.polynomial.Polynomial.fit(entry[near], angle[near], 4)
     peaks = parabola.deriv().roots()
@@ -184,6 +191,8 @@ def fold(n: float, k: int, ratio: float, sun_elevation: float, clock: float) -> 
     grown = factors * np.sqrt(np.abs(root) / np.maximum(jacobian, 1e-300)) / np.sqrt(shadow_area)
 
     end = min(root[away][-1], -root[away][0])
+    if end**2 < 2 * _CLOSE:  # two caustics nearly meet: no two rays to fit
+        return None
     u = np.linspace(0, end, 1500)[1:]
     strength = np.array([[np.interp(sign * u, root[away], row[away]) for row in grown] for sign in (1, -1)])
     outer, inner = (np.interp(sign * u, root[away], lever[away]) for sign in (1, -1))
@@ -236,9 +245,11 @@ class Drop:
         total = np.zeros((2, len(angles_rad)))
         for x, part in zip(sizes, share, strict=True):
             ratio = round(self._shape.ratio(x * self._nm / (2000 * np.pi)), 4)
-            for k in background.BOWS:
+            for k in background.BOWS:  # without a single caustic to that side a large flat drop smears its bow over the sky
                 bow = fold(self._n, k, ratio, self._shape.sun_elevation_rad, self._shape.clock_rad)
-                total += part * (background.at(angles_rad, self._densities[k]) if bow is None else bow.intensity(angles_rad, x))
+                total += part * (
+                    background.at(angles_rad, sun.smooth(self._densities[k], _SMEAR)) if bow is None else bow.intensity(angles_rad, x)
+                )
         return total
 
     def scattered(self, angles_rad: np.ndarray, sizes: np.ndarray, share: np.ndarray) -> np.ndarray:
