@@ -102,7 +102,7 @@ bool emit_sun(const Scene &scene, const LampModel &sun, const std::vector<Emissi
 bool emit_world(const Scene &scene, const WorldLight &world, const std::vector<EmissionTarget> &targets, Vec2 pick,
                 Vec2 position, Vec2 direction, const Wavelengths &w, Emission &e, Spectrum &spectrum) {
   float pdf;
-  const Vec3 towards = world.sample({}, false, direction, pdf);
+  const Vec3 towards = world.sample_emission(direction, pdf);
   if (!(pdf > 0)) return false;
   const Vec3 rgb = world_radiance(scene, towards, 0);
   if (!(max_component(rgb) > 0)) return false;

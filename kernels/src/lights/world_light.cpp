@@ -11,6 +11,7 @@ namespace {
 
 // What part of the samples goes everywhere alike, for what the map's resolution missed.
 constexpr float kFloor = 0.02f;
+constexpr float kPhotonFloor = 0.1f;  // photons have no second way to find a direction
 
 // Index i with cdf[i] <= u < cdf[i + 1], of n intervals; `fraction` within it.
 int find_interval(const float *cdf, int n, float u, float &fraction) {
@@ -24,6 +25,18 @@ float importance(const Vec3 &rgb) {
   const Vec3 c = max(rgb, Vec3{});
   const float value = 0.5f * (luminance(c) + average(c));
   return std::isfinite(value) ? value : 0.0f;
+}
+
+Vec3 direction_of(float u, float v) {
+  const float azimuth = 2 * kPi * (0.5f - u), height = kPi * (v - 0.5f);
+  const float c = std::cos(height);
+  return {c * std::cos(azimuth), c * std::sin(azimuth), std::sin(height)};
+}
+
+Vec2 coordinates_of(const Vec3 &d) {
+  const float u = 0.5f - std::atan2(d.y, d.x) / (2 * kPi);
+  const float v = 0.5f + std::atan2(d.z, std::hypot(d.x, d.y)) * kInvPi;
+  return {saturate(u), saturate(v)};
 }
 
 }  // namespace
@@ -42,18 +55,6 @@ Vec3 world_radiance(const Scene &scene, const Vec3 &d, uint32_t ray_kind) {
   return is_finite(rgb) ? rgb : Vec3{};
 }
 
-Vec3 WorldLight::direction_of(float u, float v) {
-  const float azimuth = 2 * kPi * (0.5f - u), height = kPi * (v - 0.5f);
-  const float c = std::cos(height);
-  return {c * std::cos(azimuth), c * std::sin(azimuth), std::sin(height)};
-}
-
-Vec2 WorldLight::coordinates_of(const Vec3 &d) {
-  const float u = 0.5f - std::atan2(d.y, d.x) / (2 * kPi);
-  const float v = 0.5f + std::atan2(d.z, std::hypot(d.x, d.y)) * kInvPi;
-  return {saturate(u), saturate(v)};
-}
-
 void WorldLight::build(const Scene &scene) {
   present_ = scene.world.present;
   if (!present_) return;
@@ -66,12 +67,19 @@ void WorldLight::build(const Scene &scene) {
       values[size_t(y) * size_t(width) + size_t(x)] =
           importance(world_radiance(scene, direction_of((float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height)), 0));
   });
-  build_from_values(std::move(values), width, height);
-  if (!map) row_cdf_.clear(), cell_cdf_.clear(), density_.clear();
+  double total = 0, solid = 0;
+  for (int y = 0; y < height; ++y) {
+    const double c = std::cos(kPi * ((y + 0.5) / height - 0.5));
+    for (int x = 0; x < width; ++x) total += c * values[size_t(y) * size_t(width) + size_t(x)], solid += c;
+  }
+  brightness_ = float(total / solid);
+  seen_ = {}, emitted_ = {};
+  if (!map) return;
+  seen_.build(values, width, height, brightness_, kFloor);
+  emitted_.build(values, width, height, 0, kPhotonFloor);
 }
 
-void WorldLight::build_from_values(std::vector<float> values, int width, int height) {
-  present_ = true;
+void DirectionMap::build(const std::vector<float> &values, int width, int height, float subtract, float floor_share) {
   width_ = width, height_ = height;
   const auto at = [&](int x, int y) { return values[size_t(y) * size_t(width) + size_t((x + width) % width)]; };
 
@@ -85,12 +93,12 @@ void WorldLight::build_from_values(std::vector<float> values, int width, int hei
       for (int j = std::max(0, y - 1); j <= std::min(height - 1, y + 1); ++j)
         for (int i = x - 1; i <= x + 1; ++i) sum += at(i, j);
       const int rows = std::min(height - 1, y + 1) - std::max(0, y - 1) + 1;
-      smooth[size_t(y) * size_t(width) + size_t(x)] = c * (0.5 * at(x, y) + 0.5 * sum / (3 * rows));
-      total += c * at(x, y), solid += c;
+      const double cell = c * std::max(0.5 * at(x, y) + 0.5 * sum / (3 * rows) - double(subtract), 0.0);
+      smooth[size_t(y) * size_t(width) + size_t(x)] = cell;
+      total += cell, solid += c;
     }
   }
-  brightness_ = float(total / solid);
-  const double floor = brightness_ > 0 ? kFloor * brightness_ : 1.0;
+  const double floor = total > 0 ? floor_share * total / solid : 1.0;
 
   row_cdf_.assign(size_t(height) + 1, 0);
   cell_cdf_.assign(size_t(height) * size_t(width + 1), 0);
@@ -118,7 +126,7 @@ void WorldLight::build_from_values(std::vector<float> values, int width, int hei
     }
 }
 
-Vec3 WorldLight::sample_map(Vec2 u, float &pdf) const {
+Vec3 DirectionMap::sample(Vec2 u, float &pdf) const {
   float fx, fy;
   const int y = find_interval(row_cdf_.data(), height_, u.y, fy);
   const int x = find_interval(&cell_cdf_[size_t(y) * size_t(width_ + 1)], width_, u.x, fx);
@@ -128,7 +136,7 @@ Vec3 WorldLight::sample_map(Vec2 u, float &pdf) const {
   return d;
 }
 
-float WorldLight::map_pdf(const Vec3 &d) const {
+float DirectionMap::pdf(const Vec3 &d) const {
   const Vec2 uv = coordinates_of(d);
   const int x = std::min(int(uv.x * float(width_)), width_ - 1), y = std::min(int(uv.y * float(height_)), height_ - 1);
   const float c = std::hypot(d.x, d.y);
@@ -136,7 +144,7 @@ float WorldLight::map_pdf(const Vec3 &d) const {
 }
 
 Vec3 WorldLight::sample(const Vec3 &normal, bool transmissive, Vec2 u, float &pdf) const {
-  if (has_map()) return sample_map(u, pdf);
+  if (!seen_.empty()) return seen_.sample(u, pdf);
   if (length_squared(normal) == 0) {
     pdf = 1 / kFourPi;
     return sample_sphere(u);
@@ -149,8 +157,14 @@ Vec3 WorldLight::sample(const Vec3 &normal, bool transmissive, Vec2 u, float &pd
   return d;
 }
 
+Vec3 WorldLight::sample_emission(Vec2 u, float &pdf) const {
+  if (!emitted_.empty()) return emitted_.sample(u, pdf);
+  pdf = 1 / kFourPi;
+  return sample_sphere(u);
+}
+
 float WorldLight::pdf(const Vec3 &normal, bool transmissive, const Vec3 &d) const {
-  if (has_map()) return map_pdf(d);
+  if (!seen_.empty()) return seen_.pdf(d);
   if (length_squared(normal) == 0) return 1 / kFourPi;
   const float c = dot(normal, d);
   return transmissive ? std::abs(c) * kInvPi * 0.5f : std::max(c, 0.0f) * kInvPi;
