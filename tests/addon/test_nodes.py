@@ -128,7 +128,9 @@ def use(tree, group, color=None):
 
 def test_groups_within_groups_each_with_their_own_inputs():
     inner = group_with("inner", lambda t, tint: emission(t, tint))
-    outer = group_with("outer", lambda t, tint: out(node(t, "AddShader", {"Shader": use(t, inner, tint), "Shader_001": use(t, inner, GREEN)})))
+    outer = group_with(
+        "outer", lambda t, tint: out(node(t, "AddShader", {"Shader": use(t, inner, tint), "Shader_001": use(t, inner, GREEN)}))
+    )
     compiled = compiled_of(lambda t: use(t, outer, (0.25, 0.0, 0.5, 1.0)))
     assert emitted(compiled) == (0.25, 1.0, 0.5)
     assert not compiled.problems

@@ -12,7 +12,7 @@ import pytest
 pytest.importorskip("bpy")
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "reference"))
-from node_images import ROOT as _  # noqa: E402, F401  (makes the source importable)
+import node_images  # noqa: E402, F401  (makes the source importable)
 from opal_source.addon.nodes import operations as ops  # noqa: E402
 
 HEADER = (ROOT / "kernels" / "include" / "opal_shader.h").read_text()

@@ -9,6 +9,7 @@ orthographic.
 from __future__ import annotations
 
 import ctypes
+import importlib.util
 import sys
 import tempfile
 import types
@@ -18,7 +19,8 @@ import bpy
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "kernels"))
+if importlib.util.find_spec("opal_kernels") is None:
+    sys.path.insert(0, str(ROOT / "kernels"))
 if "opal_source" not in sys.modules:
     package = types.ModuleType("opal_source")
     package.__path__ = [str(ROOT)]

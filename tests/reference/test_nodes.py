@@ -95,7 +95,9 @@ for operation in VECTOR_MATHS:
         }
         made = node(tree, "VectorMath", inputs, operation=operation)
         number = operation in ("DOT_PRODUCT", "DISTANCE", "LENGTH")
-        return soft(tree, out(made, "Value")) if number else out(node(tree, "VectorMath", {"Vector": out(made, "Vector")}, operation="COSINE"))
+        return (
+            soft(tree, out(made, "Value")) if number else out(node(tree, "VectorMath", {"Vector": out(made, "Vector")}, operation="COSINE"))
+        )
 
     case(f"vector math {operation}", edges=operation in VECTOR_STEPS)(vector_math)
 
@@ -164,13 +166,26 @@ for vector_type in ("POINT", "TEXTURE", "VECTOR", "NORMAL"):
 for rotation_type in ("AXIS_ANGLE", "X_AXIS", "Y_AXIS", "Z_AXIS", "EULER_XYZ"):
 
     def rotate(tree, rotation_type=rotation_type):
-        made = node(tree, "VectorRotate", {"Vector": coordinate(tree, "Object"), "Center": (0.1, 0.2, 0.3)}, rotation_type=rotation_type, invert=True)
+        made = node(
+            tree,
+            "VectorRotate",
+            {"Vector": coordinate(tree, "Object"), "Center": (0.1, 0.2, 0.3)},
+            rotation_type=rotation_type,
+            invert=True,
+        )
         set_inputs(made, {"Axis": (1, 2, 3), "Angle": 0.8, "Rotation": (0.4, -0.5, 0.6)})
         return out(made)
 
     case(f"rotate {rotation_type}")(rotate)
 for vector_type in ("POINT", "VECTOR", "NORMAL"):
-    for ends in (("WORLD", "OBJECT"), ("OBJECT", "WORLD"), ("WORLD", "CAMERA"), ("CAMERA", "WORLD"), ("OBJECT", "CAMERA"), ("CAMERA", "OBJECT")):
+    for ends in (
+        ("WORLD", "OBJECT"),
+        ("OBJECT", "WORLD"),
+        ("WORLD", "CAMERA"),
+        ("CAMERA", "WORLD"),
+        ("OBJECT", "CAMERA"),
+        ("CAMERA", "OBJECT"),
+    ):
 
         def transform(tree, vector_type=vector_type, ends=ends):
             source = coordinate(tree, "Normal")
@@ -232,7 +247,17 @@ case("curve")(lambda t: bent(node(t, "FloatCurve", {"Factor": 0.9, "Value": two_
 # Planck's law against Cycles' fit of it, and another table of the observer.
 case("blackbody", tolerance=2e-2)(lambda t: out(node(t, "Blackbody", {"Temperature": 5200.0})))
 case("wavelength", tolerance=1e-2)(
-    lambda t: out(node(t, "Wavelength", {"Wavelength": out(node(t, "MapRange", {"Value": two_numbers(t)[0], "From Min": -1.0, "To Min": 400.0, "To Max": 720.0}), "Result")}))
+    lambda t: out(
+        node(
+            t,
+            "Wavelength",
+            {
+                "Wavelength": out(
+                    node(t, "MapRange", {"Value": two_numbers(t)[0], "From Min": -1.0, "To Min": 400.0, "To Max": 720.0}), "Result"
+                )
+            },
+        )
+    )
 )
 
 case("checker", edges=True)(lambda t: out(node(t, "TexChecker", {"Scale": 7.0})))
@@ -241,7 +266,7 @@ for dimensions in ("1D", "2D", "3D", "4D"):
     sockets = {"1D": ("W",), "4D": ("W",)}
     for which in ("Fac", "Color"):
 
-        def noise(tree, dimensions=dimensions, which=which):
+        def noise(tree, dimensions=dimensions, which=which, inputs=inputs):
             made = node(tree, "TexNoise", noise_dimensions=dimensions)
             set_inputs(made, inputs)
             if dimensions == "1D":
@@ -419,7 +444,9 @@ def _(tree):
 @case("bump on a normal map on a bump", tolerance=3e-2)
 def _(tree):
     first = node(tree, "Bump", {"Height": out(node(tree, "TexWave", {"Scale": 0.5}), "Fac"), "Distance": 0.2})
-    return shown(tree, out(node(tree, "Bump", {"Height": out(node(tree, "TexNoise", {"Scale": 1.0})), "Distance": 0.3, "Normal": out(first)})))
+    return shown(
+        tree, out(node(tree, "Bump", {"Height": out(node(tree, "TexNoise", {"Scale": 1.0})), "Distance": 0.3, "Normal": out(first)}))
+    )
 
 
 # ---- Shaders that only emit ----
@@ -438,7 +465,11 @@ def emission(tree, color, strength=1.0):
 
 
 def mix_of_mixes(tree):
-    inner = node(tree, "MixShader", {"Fac": two_numbers(tree)[0], "Shader": emission(tree, (1, 0, 0, 1)), "Shader_001": emission(tree, coordinate(tree))})
+    inner = node(
+        tree,
+        "MixShader",
+        {"Fac": two_numbers(tree)[0], "Shader": emission(tree, (1, 0, 0, 1)), "Shader_001": emission(tree, coordinate(tree))},
+    )
     outer = node(tree, "MixShader", {"Fac": 0.3, "Shader": out(inner), "Shader_001": emission(tree, (0, 0, 1, 1), 2.0)})
     return out(node(tree, "AddShader", {"Shader": out(outer), "Shader_001": out(inner)}))
 
@@ -471,7 +502,14 @@ WORLDS = {
     "reflection": lambda t: coordinate(t, "Reflection"),
     "incoming": lambda t: out(node(t, "NewGeometry"), "Incoming"),
     "equirectangular": lambda t: out(node(t, "TexEnvironment", image=picture(16, 8))),
-    "turned": lambda t: out(node(t, "TexEnvironment", {"Vector": out(node(t, "Mapping", {"Vector": coordinate(t), "Rotation": (0.3, 0.2, 1.0)}))}, image=picture(16, 8))),
+    "turned": lambda t: out(
+        node(
+            t,
+            "TexEnvironment",
+            {"Vector": out(node(t, "Mapping", {"Vector": coordinate(t), "Rotation": (0.3, 0.2, 1.0)}))},
+            image=picture(16, 8),
+        )
+    ),
     "mirror ball": lambda t: out(node(t, "TexEnvironment", image=picture(16, 8), projection="MIRROR_BALL")),
     "noise": lambda t: out(node(t, "TexNoise", {"Scale": 2.0}), "Color"),
     "camera": lambda t: coordinate(t, "Camera"),

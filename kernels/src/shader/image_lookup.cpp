@@ -61,9 +61,7 @@ Tap taps(float x, int n, const ImageSettings &s) {
       t.weight[3] = f * f * f * (1 / 6.0f);
       break;
     }
-    default:
-      t.count = 2;
-      t.weight[0] = 1 - f, t.weight[1] = f;
+    default: t.count = 2; t.weight[0] = 1 - f, t.weight[1] = f;
   }
   for (int k = 0; k < t.count; ++k) t.index[k] = wrap(first + k, n, s.extension);
   return t;

@@ -175,7 +175,7 @@ Vec3 node_vector_map_range(int mode, const Vec3 &value, const Vec3 &from_min, co
 Transform euler_rotation(const Vec3 &angles) {
   const float cx = std::cos(angles.x), cy = std::cos(angles.y), cz = std::cos(angles.z);
   const float sx = std::sin(angles.x), sy = std::sin(angles.y), sz = std::sin(angles.z);
-  return {{cy * cz, sy * sx * cz - cx * sz, sy * cx * cz + sx * sz, 0,   //
+  return {{cy * cz, sy * sx * cz - cx * sz, sy * cx * cz + sx * sz, 0,  //
            cy * sz, sy * sx * sz + cx * cz, sy * cx * sz - sx * cz, 0,  //
            -sy, cy * sx, cy * cx, 0}};
 }
@@ -198,7 +198,8 @@ Vec3 node_vector_rotate(int mode, const Vec3 &v, const Vec3 &center, const Vec3 
     return (invert ? r.transposed_vector(d) : r.vector(d)) + center;
   }
   Vec3 axis = axis_in;
-  if (mode != OPAL_ROTATE_AXIS_ANGLE) axis = {float(mode == OPAL_ROTATE_X), float(mode == OPAL_ROTATE_Y), float(mode == OPAL_ROTATE_Z)};
+  if (mode != OPAL_ROTATE_AXIS_ANGLE)
+    axis = {float(mode == OPAL_ROTATE_X), float(mode == OPAL_ROTATE_Y), float(mode == OPAL_ROTATE_Z)};
   const float l = length(axis);
   if (l == 0) return v;
   axis = axis / l;

@@ -182,7 +182,8 @@ float fractal_noise(const Fractal &f, const Point<N> &p) {
 }
 template float fractal_noise<3>(const Fractal &, const Point<3> &);
 
-float noise_texture(const Fractal &f, int dimensions, const Vec3 &p, float w, float distortion, bool color_wanted, Vec3 &color) {
+float noise_texture(const Fractal &f, int dimensions, const Vec3 &p, float w, float distortion, bool color_wanted,
+                    Vec3 &color) {
   switch (dimensions) {
     case 1: return texture<1>(f, {{w}}, distortion, color_wanted, color);
     case 2: return texture<2>(f, {{p.x, p.y}}, distortion, color_wanted, color);
@@ -198,8 +199,7 @@ float white_noise(int dimensions, const Vec3 &p, float w, Vec3 &color) {
     case 3:
       color = {hash_floats({p.x, p.y, p.z}), hash_floats({p.x, p.y, p.z, 1.0f}), hash_floats({p.x, p.y, p.z, 2.0f})};
       break;
-    default:
-      color = {hash_floats({p.x, p.y, p.z, w}), hash_floats({p.z, p.x, w, p.y}), hash_floats({w, p.z, p.y, p.x})};
+    default: color = {hash_floats({p.x, p.y, p.z, w}), hash_floats({p.z, p.x, w, p.y}), hash_floats({w, p.z, p.y, p.x})};
   }
   return color.x;
 }

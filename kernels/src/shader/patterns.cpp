@@ -85,7 +85,7 @@ BrickSample brick(const Brick &b, const Vec3 &p) {
   BrickSample s;
   s.tint = saturate(brick_random((uint32_t(row) << 16) + (uint32_t(number) & 0xFFFFu)) + b.bias);
   const float edge = std::min(std::min(x, y), std::min(width - x, b.row_height - y));
-  s.mortar = edge >= b.mortar_size ? 0.0f
+  s.mortar = edge >= b.mortar_size  ? 0.0f
              : b.mortar_smooth == 0 ? 1.0f
                                     : smoothstep01((1 - edge / b.mortar_size) / b.mortar_smooth);
   return s;

@@ -21,9 +21,9 @@ Vec3 texture_coordinate(const ShadingPoint &sp, int mode);  // OPAL_COORDINATE_*
 // The attribute's value, absent components 0 and alpha 1; false where the mesh has none of that name.
 bool find_attribute(const ShadingPoint &sp, int name, Float4 &value, int &components);
 Float4 attribute(const ShadingPoint &sp, int name, int mode, const Float4 &fallback);
-Float4 geometry_input(const ShadingPoint &sp, int mode);      // OPAL_GEOMETRY_*
-Float4 object_input(const ShadingPoint &sp, int mode);        // OPAL_OBJECT_*
-float light_path_input(const ShadingPoint &sp, int mode);     // OPAL_PATH_*
+Float4 geometry_input(const ShadingPoint &sp, int mode);   // OPAL_GEOMETRY_*
+Float4 object_input(const ShadingPoint &sp, int mode);     // OPAL_OBJECT_*
+float light_path_input(const ShadingPoint &sp, int mode);  // OPAL_PATH_*
 
 // Unit tangent in world space: round an axis of Generated (0 X, 1 Y, 2 Z), or along U of the UV map `uv` (3).
 Vec3 tangent_input(const ShadingPoint &sp, int mode, int uv);

@@ -34,11 +34,11 @@ bool check(const opal_instruction &c, int index, int n_constants, int n_register
         [[fallthrough]];
       case 'r':
         if (in < 0 || in >= n_registers || !written[size_t(in)])
-          return fail(error, "instruction %d (%s): input %d reads register %d, which nothing has written", index, s.name, i, in);
+          return fail(error, "instruction %d (%s): input %d reads register %d, which nothing has written", index, s.name, i,
+                      in);
         break;
       case 'm':
-        if (in < -1 || in >= n_images)
-          return fail(error, "instruction %d (%s): there is no image %d", index, s.name, in);
+        if (in < -1 || in >= n_images) return fail(error, "instruction %d (%s): there is no image %d", index, s.name, in);
         break;
       case 'c': {
         const int count = constants_read(c, i);
@@ -116,7 +116,8 @@ bool program_from_desc(const opal_program &desc, int n_images, Program &out, con
   if (desc.n_constants < 0 || desc.n_constants > OPAL_MAX_CONSTANTS || (desc.n_constants && !desc.constants))
     return fail(error, "a program with %d constants cannot be read", desc.n_constants);
   if (desc.n_registers < desc.n_constants || desc.n_registers - desc.n_constants > OPAL_MAX_REGISTERS)
-    return fail(error, "a program with %d registers of which %d are constants cannot be read", desc.n_registers, desc.n_constants);
+    return fail(error, "a program with %d registers of which %d are constants cannot be read", desc.n_registers,
+                desc.n_constants);
 
   Program p;
   p.n_constants = desc.n_constants, p.n_registers = desc.n_registers;
@@ -136,7 +137,8 @@ bool program_from_desc(const opal_program &desc, int n_images, Program &out, con
     p.code[k].in[kBumpHeight] = int32_t(p.heights.size());
     p.heights.push_back(slice(p.code, k, height, [](const opal_instruction &) { return false; }));
   }
-  p.code = slice(p.code, p.code.size(), none, [&p](const opal_instruction &c) { return signature(c.op).lobe && !weighs_nothing(p, c); });
+  p.code = slice(p.code, p.code.size(), none,
+                 [&p](const opal_instruction &c) { return signature(c.op).lobe && !weighs_nothing(p, c); });
   p.emission_code = slice(p.code, p.code.size(), none, [&p](const opal_instruction &c) { return emits(p, c); });
   p.transparency_code = slice(p.code, p.code.size(), none, [&p](const opal_instruction &c) { return lets_through(p, c); });
 

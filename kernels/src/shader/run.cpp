@@ -19,13 +19,13 @@ namespace {
 enum class Purpose { Surface, Emission, Transparency, Values };
 
 struct Run {
-  const Scene *scene;      // null: images are grey
+  const Scene *scene;  // null: images are grey
   const Program &program;
   const ShadingPoint &sp;
   Registers r;
   Purpose purpose = Purpose::Values;
   ClosureSet *set = nullptr;
-  Vec3 sum;                // Transparency
+  Vec3 sum;  // Transparency
 };
 
 void execute(Run &run, const Program::Code &code);
@@ -48,8 +48,12 @@ Vec3 transform(const Transform &t, int mode, const Vec3 &v) {
   }
 }
 
-Vec3 separate(int mode, const Vec3 &c) { return mode == OPAL_COLOR_HSV ? rgb_to_hsv(c) : mode == OPAL_COLOR_HSL ? rgb_to_hsl(c) : c; }
-Vec3 combine(int mode, const Vec3 &c) { return mode == OPAL_COLOR_HSV ? hsv_to_rgb(c) : mode == OPAL_COLOR_HSL ? hsl_to_rgb(c) : c; }
+Vec3 separate(int mode, const Vec3 &c) {
+  return mode == OPAL_COLOR_HSV ? rgb_to_hsv(c) : mode == OPAL_COLOR_HSL ? rgb_to_hsl(c) : c;
+}
+Vec3 combine(int mode, const Vec3 &c) {
+  return mode == OPAL_COLOR_HSV ? hsv_to_rgb(c) : mode == OPAL_COLOR_HSL ? hsl_to_rgb(c) : c;
+}
 
 Vec3 mix(const Run &run, const opal_instruction &c) {
   const int flags = c.in[3];
@@ -72,7 +76,8 @@ Float4 map_range(const Run &run, const opal_instruction &c) {
   const auto xyz = [&](int i) { return run.r.xyz(c.in[i]); };
   const bool clamp_result = c.in[6] & 2;
   if (c.in[6] & 1)
-    return vector(node_vector_map_range(c.mode, xyz(0), xyz(1), xyz(2), xyz(3), xyz(4), run.r.xyz(c.in[5], {4, 4, 4}), clamp_result));
+    return vector(
+        node_vector_map_range(c.mode, xyz(0), xyz(1), xyz(2), xyz(3), xyz(4), run.r.xyz(c.in[5], {4, 4, 4}), clamp_result));
   const float low = scalar(3), high = scalar(4);
   const float value = node_map_range(c.mode, scalar(0), scalar(1), scalar(2), low, high, run.r.scalar(c.in[5], 4));
   return number(clamp_result ? clamp(value, std::min(low, high), std::max(low, high)) : value);
@@ -280,7 +285,9 @@ void execute(Run &run, const Program::Code &code) {
     const auto normal = [&](int i) { return r.xyz(c.in[i], run.sp.ns); };
     switch (c.op) {
       case OPAL_OP_GREY: r.write(c.out) = number(c.mode == OPAL_GREY_AVERAGE ? average(xyz(0)) : luminance(xyz(0))); break;
-      case OPAL_OP_MATH: r.write(c.out) = number(node_math(c.mode, scalar(0), r.scalar(c.in[1], 0), r.scalar(c.in[2], 0))); break;
+      case OPAL_OP_MATH:
+        r.write(c.out) = number(node_math(c.mode, scalar(0), r.scalar(c.in[1], 0), r.scalar(c.in[2], 0)));
+        break;
       case OPAL_OP_VECTOR_MATH:
         r.write(c.out) = vector(node_vector_math(c.mode, xyz(0), r.xyz(c.in[1], {}), r.xyz(c.in[2], {}), r.scalar(c.in[3], 1)));
         break;
@@ -311,11 +318,13 @@ void execute(Run &run, const Program::Code &code) {
       case OPAL_OP_SEPARATE: r.write(c.out) = number(c.in[1] == 3 ? in(0).w : separate(c.mode, xyz(0))[c.in[1]]); break;
       case OPAL_OP_COMBINE: r.write(c.out) = vector(combine(c.mode, {scalar(0), scalar(1), scalar(2)}), 1); break;
       case OPAL_OP_PACK:
-        r.write(c.out) = c.mode == 1 ? vector(xyz(0), scalar(1))
-                                     : Float4{scalar(0), scalar(1), r.scalar(c.in[2], 0), r.scalar(c.in[3], 0)};
+        r.write(c.out) =
+            c.mode == 1 ? vector(xyz(0), scalar(1)) : Float4{scalar(0), scalar(1), r.scalar(c.in[2], 0), r.scalar(c.in[3], 0)};
         break;
 
-      case OPAL_OP_HUE_SATURATION: r.write(c.out) = vector(hue_saturation(scalar(0), xyz(1), scalar(2), scalar(3), scalar(4)), 1); break;
+      case OPAL_OP_HUE_SATURATION:
+        r.write(c.out) = vector(hue_saturation(scalar(0), xyz(1), scalar(2), scalar(3), scalar(4)), 1);
+        break;
       case OPAL_OP_INVERT: r.write(c.out) = vector(lerp(xyz(1), Vec3{1, 1, 1} - xyz(1), scalar(0)), 1); break;
       case OPAL_OP_GAMMA: r.write(c.out) = vector(gamma_correct(xyz(0), scalar(1)), 1); break;
       case OPAL_OP_BRIGHT_CONTRAST: r.write(c.out) = vector(bright_contrast(xyz(0), scalar(1), scalar(2)), 1); break;
@@ -328,7 +337,9 @@ void execute(Run &run, const Program::Code &code) {
       case OPAL_OP_LIGHT_PATH: r.write(c.out) = number(light_path_input(run.sp, c.mode)); break;
       case OPAL_OP_FRESNEL: r.write(c.out) = number(fresnel_input(run.sp, scalar(0), normal(1))); break;
       case OPAL_OP_LAYER_WEIGHT: r.write(c.out) = number(layer_weight(run.sp, c.mode == 1, scalar(0), normal(1))); break;
-      case OPAL_OP_NORMAL_MAP: r.write(c.out) = vector(normal_map(run.sp, c.mode, xyz(0), scalar(1), c.in[2], c.in[3] == 1)); break;
+      case OPAL_OP_NORMAL_MAP:
+        r.write(c.out) = vector(normal_map(run.sp, c.mode, xyz(0), scalar(1), c.in[2], c.in[3] == 1));
+        break;
       case OPAL_OP_BUMP: r.write(c.out) = vector(bump(run, c)); break;
       case OPAL_OP_TANGENT: r.write(c.out) = vector(tangent_input(run.sp, c.mode, c.in[0])); break;
 

@@ -18,9 +18,9 @@ struct Program {
   using Code = std::vector<opal_instruction>;
 
   Code code;
-  Code emission_code;       // what the emission needs; empty: none is emitted
-  Code transparency_code;   // what the straight-through transmittance needs; empty: opaque
-  std::vector<Code> heights; // of the Bump operations, by number (their last input)
+  Code emission_code;            // what the emission needs; empty: none is emitted
+  Code transparency_code;        // what the straight-through transmittance needs; empty: opaque
+  std::vector<Code> heights;     // of the Bump operations, by number (their last input)
   std::vector<float> constants;  // 4 floats a register
   int n_constants = 0, n_registers = 0;
   bool constant_emission = true;  // emission is the same everywhere

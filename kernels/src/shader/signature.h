@@ -8,14 +8,14 @@
 namespace opal {
 
 struct Signature {
-  const char *name = nullptr;    // null: no such operation
-  int outputs = 0;               // registers written from `out` on
+  const char *name = nullptr;  // null: no such operation
+  int outputs = 0;             // registers written from `out` on
   // One letter an input: r a register, o a register or -1, i an integer, c the first of some constants (or -1), m an image
   // (or -1).
   const char *inputs = "";
-  int modes = 1;                 // mode lies in 0 .. modes-1
-  bool lobe = false;             // leaves a lobe behind
-  bool of_the_point = false;     // depends on where it is run
+  int modes = 1;              // mode lies in 0 .. modes-1
+  bool lobe = false;          // leaves a lobe behind
+  bool of_the_point = false;  // depends on where it is run
 };
 
 const Signature &signature(int op);

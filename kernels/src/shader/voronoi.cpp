@@ -74,8 +74,8 @@ Point<N> random_point(const Voronoi &s, const Cell<N> &c) {
   if constexpr (N == 3)
     return {{hash_floats({q[0], q[1], q[2]}), hash_floats({q[0], q[1], q[2], 1.0f}), hash_floats({q[0], q[1], q[2], 2.0f})}};
   if constexpr (N == 4)
-    return {{hash_floats({q[0], q[1], q[2], q[3]}), hash_floats({q[3], q[0], q[1], q[2]}), hash_floats({q[2], q[3], q[0], q[1]}),
-             hash_floats({q[1], q[2], q[3], q[0]})}};
+    return {{hash_floats({q[0], q[1], q[2], q[3]}), hash_floats({q[3], q[0], q[1], q[2]}),
+             hash_floats({q[2], q[3], q[0], q[1]}), hash_floats({q[1], q[2], q[3], q[0]})}};
   return p;
 }
 
@@ -88,7 +88,8 @@ Vec3 random_color(const Voronoi &s, const Cell<N> &c) {
     if (s.jenkins) return {hash_floats({q[0], q[1]}), hash_floats({q[0], q[1], 1.0f}), hash_floats({q[0], q[1], 2.0f})};
   if constexpr (N == 4) {
     if (s.jenkins)
-      return {hash_floats({q[0], q[1], q[2], q[3]}), hash_floats({q[2], q[0], q[3], q[1]}), hash_floats({q[3], q[2], q[1], q[0]})};
+      return {hash_floats({q[0], q[1], q[2], q[3]}), hash_floats({q[2], q[0], q[3], q[1]}),
+              hash_floats({q[3], q[2], q[1], q[0]})};
     const Point<4> p = random_point(s, c);
     return {p.v[0], p.v[1], p.v[2]};
   } else {
@@ -106,7 +107,8 @@ void around(const Voronoi &s, const Cell<N> &home, int reach, F f) {
   for (;;) {
     Cell<N> cell;
     Point<N> point;
-    for (int i = 0; i < N; ++i) cell.v[i] = int32_t(uint32_t(home.v[i]) + uint32_t(offset.v[i])), point.v[i] = float(offset.v[i]);
+    for (int i = 0; i < N; ++i)
+      cell.v[i] = int32_t(uint32_t(home.v[i]) + uint32_t(offset.v[i])), point.v[i] = float(offset.v[i]);
     f(cell, point + random_point(s, cell) * s.randomness);
     int i = 0;
     while (i < N && ++offset.v[i] > reach) offset.v[i++] = -reach;
@@ -179,7 +181,8 @@ float distance_to_edge(const Voronoi &s, const Point<N> &p) {
     float points[3];
     int i = 0;
     around<1>(s, at.cell, 1, [&](const Cell<1> &, const Point<1> &q) { points[i++] = q.v[0]; });
-    return std::min(std::abs((points[1] + points[0]) / 2 - at.local.v[0]), std::abs((points[1] + points[2]) / 2 - at.local.v[0]));
+    return std::min(std::abs((points[1] + points[0]) / 2 - at.local.v[0]),
+                    std::abs((points[1] + points[2]) / 2 - at.local.v[0]));
   } else {
     Point<N> closest{};
     float least = FLT_MAX;
