@@ -89,3 +89,23 @@ def test_light_decays_at_the_diffusion_rate(albedo, rate):
 def test_beer_lambert_and_the_integrating_sphere():
     np.testing.assert_allclose(media.transmittance(0.5, np.array([1, 2, 4])), [0.606531, 0.367879, 0.135335], atol=1e-6)
     assert [media.sphere_multiplier(r) for r in (0.2, 0.5, 0.8, 0.9)] == pytest.approx([1.25, 2, 5, 10])
+
+
+@pytest.mark.parametrize(
+    ("albedo", "normal", "diffuse"),
+    [
+        (0.5, 0.115226, 0.146544),
+        (0.8, 0.285255, 0.341867),
+        (0.9, 0.414947, 0.478024),
+        (0.95, 0.535541, 0.596669),
+        (0.99, 0.752721, 0.794564),
+        (0.999, 0.912845, 0.929713),
+    ],
+)
+def test_a_half_space_reflects_what_chandrasekhar_says(albedo, normal, diffuse):
+    assert media.half_space_albedo(1.0, albedo) == pytest.approx(normal, abs=2e-6)
+    assert media.half_space_diffuse_albedo(albedo) == pytest.approx(diffuse, abs=2e-5)
+
+
+def test_the_h_function_of_a_half_space_that_absorbs_nothing():
+    assert media.chandrasekhar_h(1.0, 1.0) == pytest.approx(2.907811, abs=2e-5)  # Chandrasekhar: 2.9078

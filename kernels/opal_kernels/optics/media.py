@@ -88,3 +88,42 @@ def attenuation_rate(albedo: float) -> float:
 def sphere_multiplier(reflectance: float) -> float:
     """Return by how much a closed diffuse sphere multiplies the light on its wall: 1/(1 - rho)."""
     return 1 / (1 - reflectance)
+
+
+def chandrasekhar_h(mu, albedo: float, nodes: int = 64) -> np.ndarray:
+    """Return Chandrasekhar's H function of isotropic scattering at cosines mu in [0, 1].
+
+    By iteration of 1/H = sqrt(1 - albedo) + (albedo/2) int_0^1 mu' H(mu')/(mu + mu') dmu' (Radiative Transfer, section 40) on
+    Gauss-Legendre nodes, which converges to the physical solution.
+
+    Raises
+    ------
+    ValueError
+        If the albedo is not in [0, 1].
+    """
+    if not 0 <= albedo <= 1:
+        raise ValueError(f"the albedo must lie between 0 and 1, not {albedo}")
+    x, w = np.polynomial.legendre.leggauss(nodes)
+    x, w = (x + 1) / 2, w / 2
+    h = np.ones(nodes)
+    kernel = x * w / (x[:, None] + x)
+    for _ in range(2000):
+        following = 1 / (np.sqrt(1 - albedo) + albedo / 2 * kernel @ h)
+        following = (following + h) / 2  # the plain iteration swings about the solution when nothing is absorbed
+        if np.abs(following - h).max() < 1e-13:
+            break
+        h = following
+    mu = np.asarray(mu, float)
+    return 1 / (np.sqrt(1 - albedo) + albedo / 2 * (x * w * h / (mu[..., None] + x)).sum(axis=-1))
+
+
+def half_space_albedo(mu0, albedo: float) -> np.ndarray:
+    """Return the reflected fraction of a beam (cosine mu0 with the normal) on a half-space: 1 - H(mu0) sqrt(1 - albedo)."""
+    return 1 - chandrasekhar_h(mu0, albedo) * np.sqrt(1 - albedo)
+
+
+def half_space_diffuse_albedo(albedo: float, nodes: int = 64) -> float:
+    """Return the reflected fraction of diffuse light on a half-space, 2 int mu A(mu) dmu."""
+    x, w = np.polynomial.legendre.leggauss(nodes)
+    x, w = (x + 1) / 2, w / 2
+    return float((2 * x * half_space_albedo(x, albedo) * w).sum())
