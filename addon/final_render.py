@@ -96,7 +96,7 @@ class _FinalRender:
             raise Stopped
 
     def _translate(self) -> Scene:
-        builder = SceneBuilder(self.report, self.settings.threads, self._stage)
+        builder = SceneBuilder(self.report, self.settings.threads, self._stage, self.engine.is_preview)
         try:
             motion = self.settings.motion_blur
             start, end = _shutter(self.scene.render) if motion else (0.0, 0.0)
@@ -141,8 +141,9 @@ class _FinalRender:
     def _run_passes(self, render: Render, result: Any) -> bool:
         """Renders until the passes, the time or the noise say enough; False if the person stopped it."""
         opal = self.scene.opal
-        total = settings.PREVIEW_PASSES if self.engine.is_preview else opal.passes
-        threshold = 0.0 if self.engine.is_preview else opal.noise_threshold
+        total, time_limit, threshold = opal.passes, opal.time_limit, opal.noise_threshold
+        if self.engine.is_preview:
+            total, time_limit, threshold = settings.PREVIEW_PASSES, settings.PREVIEW_SECONDS, 0.0
         begun = time.monotonic()
         for number in range(total):
             if not self._run_pass(render, number, total, begun):
@@ -150,7 +151,7 @@ class _FinalRender:
             now = time.monotonic()
             if number + 1 < total and now - self.last_shown > _SHOW_SECONDS:
                 self._show(render, result)
-            if opal.time_limit and now - begun >= opal.time_limit:
+            if time_limit and now - begun >= time_limit:
                 break
             if threshold and 0 <= render.noise < threshold:
                 break

@@ -10,7 +10,8 @@ from typing import Any
 from opal_kernels.descriptions import Carry, Filter, Pass, RenderSettings
 
 PREVIEW_PASSES = 16
-_PREVIEW_PHOTONS = 20_000
+PREVIEW_SECONDS = 3.0
+_PREVIEW_PHOTONS = 4_000
 
 
 @dataclass(frozen=True)

@@ -28,10 +28,13 @@ class Materials:
         Handed to the node readers.
     report : Report
         Told what the node readers could not keep.
+    absorption_scale : float
+        Factor on the absorption of gems: below 1 they look like smaller stones.
     """
 
-    def __init__(self, scene: Scene, context: Any, report: Report) -> None:
+    def __init__(self, scene: Scene, context: Any, report: Report, absorption_scale: float = 1.0) -> None:
         self._scene, self._context, self._report = scene, context, report
+        self._absorption_scale = absorption_scale
         self._numbers: dict[int, int] = {}
 
     def number(self, material: Any) -> int:
@@ -79,6 +82,8 @@ class Materials:
         if sentence := gems.refusal(presets.settings_of(gem)) if gem.species == presets.CUSTOM else "":
             self._report.add(name, sentence + " The gem is rendered with an index of 1.5.")
             index[:] = 1.5
+        if absorption is not None:
+            absorption = absorption * self._absorption_scale
         description = Gem(
             index_spectrum=self._scene.add_spectrum(index),
             absorption_spectrum=-1 if absorption is None else self._scene.add_spectrum(absorption),

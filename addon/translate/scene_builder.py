@@ -24,6 +24,10 @@ from .node_context import NodeContext
 from .world import world_from_scene
 
 
+# A stone of 6.5 mm, one carat of diamond, for the ball of 2 m in Blender's preview.
+_PREVIEW_ABSORPTION = 0.0065 / 2.0
+
+
 class Stopped(Exception):
     """The person stopped the render during the translation."""
 
@@ -54,13 +58,21 @@ class SceneBuilder:
         0 takes every core.
     stage : callable
         Called with a few words before each step; may raise `Stopped`.
+    preview : bool
+        Gems absorb as stones of usual size do, not as the boulders that Blender's preview shows.
     """
 
-    def __init__(self, report: Report, threads: int = 0, stage: Callable[[str], None] = _ignore_stage) -> None:
+    def __init__(
+        self,
+        report: Report,
+        threads: int = 0,
+        stage: Callable[[str], None] = _ignore_stage,
+        preview: bool = False,
+    ) -> None:
         self._report, self._stage = report, stage
         self.scene = Scene(threads=threads)
         self._context = NodeContext(self.scene, report)
-        self._materials = Materials(self.scene, self._context, report)
+        self._materials = Materials(self.scene, self._context, report, _PREVIEW_ABSORPTION if preview else 1.0)
 
     def read(self, depsgraph: Any) -> Snapshot:
         """Reads everything that is seen: instances, lamps, world, materials and meshes."""
