@@ -27,18 +27,12 @@ def test_point_without_a_size_has_the_intensity_of_its_power_over_the_sphere():
 
 @pytest.mark.parametrize(("soft", "expected"), [(1, 1 / (1 + 0.5**2 / 2**2)), (0, 1.0)])
 def test_point_with_a_radius_is_a_facing_disc_or_a_sphere(soft, expected):
-    with scene_with(
-        lamp(LightType.POINT, (0, 0, 2), power=100.0, radius=0.5, soft_falloff=soft)
-    ) as scene:
+    with scene_with(lamp(LightType.POINT, (0, 0, 2), power=100.0, radius=0.5, soft_falloff=soft)) as scene:
         e, error = irradiance(scene, (0, 0, 0), UP)
-    assert e == pytest.approx(
-        np.full(3, expected * 100 / (16 * np.pi)), rel=TOLERANCE
-    ), error
+    assert e == pytest.approx(np.full(3, expected * 100 / (16 * np.pi)), rel=TOLERANCE), error
 
 
-@pytest.mark.parametrize(
-    ("angle", "blend"), [(0.5, 0.0), (0.5, 1.0), (2.0, 0.15), (3.1, 0.5)]
-)
+@pytest.mark.parametrize(("angle", "blend"), [(0.5, 0.0), (0.5, 1.0), (2.0, 0.15), (3.1, 0.5)])
 def test_spot_is_as_bright_on_its_axis_as_the_point(angle, blend):
     with scene_with(
         lamp(
@@ -67,25 +61,19 @@ def test_spot_falls_off_as_a_smooth_step_of_the_cosine():
         )
     ) as scene:
         for theta in np.linspace(0, 0.7, 8):
-            s = sample_light(
-                scene, receiver((height * np.tan(theta), 0, 0), UP), [[0.5, 0.5, 0.5]]
-            )
+            s = sample_light(scene, receiver((height * np.tan(theta), 0, 0), UP), [[0.5, 0.5, 0.5]])
             half = np.cos(angle / 2)
             x = np.clip((np.cos(theta) - half) / ((1 - half) * blend), 0, 1)
             expected = x * x * (3 - 2 * x) / (4 * np.pi) * (np.cos(theta) / height) ** 2
             found = s["radiance"][0] / max(s["pdf"][0], 1e-30)
-            assert found == pytest.approx(
-                np.full(3, expected), rel=TOLERANCE, abs=1e-9
-            ), theta
+            assert found == pytest.approx(np.full(3, expected), rel=TOLERANCE, abs=1e-9), theta
 
 
 @pytest.mark.parametrize("angle", [0.0, np.radians(0.526), 0.5, 2.0])
 def test_sun_gives_its_strength_to_a_plane_that_faces_it(angle):
     direction = np.array([0.3, -0.2, -1.0])
     facing = -direction / np.linalg.norm(direction)
-    with scene_with(
-        lamp(LightType.SUN, direction=direction, power=3.0, radius=angle / 2)
-    ) as scene:
+    with scene_with(lamp(LightType.SUN, direction=direction, power=3.0, radius=angle / 2)) as scene:
         e, error = irradiance(scene, (5, 6, 7), facing)
     assert e == pytest.approx(np.full(3, 3.0), rel=TOLERANCE), error
 
@@ -95,9 +83,7 @@ def test_area_lamp_has_the_axial_intensity_of_its_power_over_pi_whatever_its_sha
     kind,
 ):
     far = 60.0
-    with scene_with(
-        lamp(kind, (0, 0, far), DOWN, power=100.0, size_u=0.5, size_v=0.25)
-    ) as scene:
+    with scene_with(lamp(kind, (0, 0, far), DOWN, power=100.0, size_u=0.5, size_v=0.25)) as scene:
         e, _ = irradiance(scene, (0, 0, 0), UP, n=4000)
     assert e == pytest.approx(np.full(3, 100 / np.pi / far**2), rel=TOLERANCE)
 
@@ -146,15 +132,7 @@ def test_spread_concentrates_the_same_power(degrees):
             at = np.array([np.sin(t), 0, 1 - np.cos(t)])
             sample = sample_light(scene, receiver(at), [[0.5, 0.5, 0.5]])
             if sample["pdf"][0] > 0:
-                flux += (
-                    sample["radiance"][0, 1]
-                    / sample["pdf"][0]
-                    * 2
-                    * np.pi
-                    * np.sin(t)
-                    * s
-                    / 400
-                )
+                flux += sample["radiance"][0, 1] / sample["pdf"][0] * 2 * np.pi * np.sin(t) * s / 400
     assert on_axis[1] == pytest.approx(expected / np.pi, rel=5e-3)
     assert flux == pytest.approx(1.0, rel=1e-2)
 
@@ -169,9 +147,7 @@ def test_lamps_scale_with_their_objects_but_keep_their_power():
         size_u=1,
         size_v=1,
     )
-    along_x, along_y = (
-        light.transform[:, i] / np.linalg.norm(light.transform[:, i]) for i in (0, 1)
-    )
+    along_x, along_y = (light.transform[:, i] / np.linalg.norm(light.transform[:, i]) for i in (0, 1))
     with scene_with(light) as scene:
         distance, radiance, _ = lights_along(
             scene,
@@ -203,9 +179,7 @@ def test_without_normalize_the_radiance_does_not_depend_on_the_size(kind):
 
 def test_lamp_colour_comes_out_as_given():
     color = (0.9, 0.4, 0.1)
-    with scene_with(
-        lamp(LightType.POINT, (0, 0, 1), power=4 * np.pi, color=color)
-    ) as scene:
+    with scene_with(lamp(LightType.POINT, (0, 0, 1), power=4 * np.pi, color=color)) as scene:
         e, _ = irradiance(scene, (0, 0, 0), UP, n=16)
     assert e == pytest.approx(np.array(color), rel=5e-3)
 
@@ -227,9 +201,7 @@ def test_a_spectrum_of_its_own_keeps_the_luminance_of_the_lamp():
         e, _ = irradiance(scene, (0, 0, 0), UP, n=16)
     assert weights @ e == pytest.approx(weights @ [1.0, 0.5, 0.2], rel=5e-3)
     # PHYSICS section 5, 16: flat emission is (1.2049, 0.9482, 0.9092).
-    assert e / e[1] == pytest.approx(
-        np.array([1.2049, 0.9482, 0.9092]) / 0.9482, rel=5e-3
-    )
+    assert e / e[1] == pytest.approx(np.array([1.2049, 0.9482, 0.9092]) / 0.9482, rel=5e-3)
 
 
 def test_uniform_world_has_the_radiance_of_its_colour_and_gives_pi_times_it():
@@ -270,18 +242,13 @@ def test_a_ray_sees_of_a_lamp_what_sampling_it_returns(kind):
 @pytest.mark.parametrize("kind", [LightType.RECTANGLE, LightType.SPOT])
 def test_lamps_shine_to_one_side(kind):
     with scene_with(lamp(kind, (0, 0, 2), UP, power=5.0, radius=0.3)) as scene:
-        assert (
-            not np.isfinite(lights_along(scene, (0, 0, 0), [UP])[0][0])
-            or kind == LightType.SPOT
-        )
+        assert not np.isfinite(lights_along(scene, (0, 0, 0), [UP])[0][0]) or kind == LightType.SPOT
         assert lights_along(scene, (0, 0, 0), [UP])[1].max() == 0
         assert irradiance(scene, (0, 0, 0), UP, n=64)[0].max() == 0
 
 
 def test_lamps_hidden_from_a_kind_of_ray_are_not_met_by_it():
-    with scene_with(
-        lamp(LightType.ELLIPSE, (0, 0, 2), DOWN, power=5.0, visibility=63 & ~1)
-    ) as scene:
+    with scene_with(lamp(LightType.ELLIPSE, (0, 0, 2), DOWN, power=5.0, visibility=63 & ~1)) as scene:
         assert lights_along(scene, (0, 0, 0), [UP], ray_kind=1)[1].max() == 0
         assert lights_along(scene, (0, 0, 0), [UP], ray_kind=2)[1].min() > 0
 
@@ -289,30 +256,17 @@ def test_lamps_hidden_from_a_kind_of_ray_are_not_met_by_it():
 def test_light_linking_keeps_a_lamp_from_sets_that_it_does_not_light():
     with scene_with(lamp(LightType.POINT, (0, 0, 2), receivers=0b10)) as scene:
         u = [[0.5, 0.5, 0.5]]
-        assert (
-            sample_light(scene, receiver((0, 0, 0), UP, light_group=0), u)["pdf"][0]
-            == 0
-        )
-        assert (
-            sample_light(scene, receiver((0, 0, 0), UP, light_group=1), u)["pdf"][0]
-            == 1
-        )
-        assert (
-            sample_light(scene, receiver((0, 0, 0), UP, light_group=-1), u)["pdf"][0]
-            == 1
-        )
+        assert sample_light(scene, receiver((0, 0, 0), UP, light_group=0), u)["pdf"][0] == 0
+        assert sample_light(scene, receiver((0, 0, 0), UP, light_group=1), u)["pdf"][0] == 1
+        assert sample_light(scene, receiver((0, 0, 0), UP, light_group=-1), u)["pdf"][0] == 1
 
 
-@pytest.mark.parametrize(
-    "broken", [{"scale": (0, 0, 0)}, {"power": 0.0}, {"color": (0, 0, 0)}]
-)
+@pytest.mark.parametrize("broken", [{"scale": (0, 0, 0)}, {"power": 0.0}, {"color": (0, 0, 0)}])
 @pytest.mark.parametrize("kind", list(LightType))
 def test_lamps_of_no_size_or_power_give_nothing_and_break_nothing(kind, broken):
     scale = broken.get("scale", (1, 1, 1))
     fields = {k: v for k, v in broken.items() if k != "scale"}
-    with scene_with(
-        lamp(kind, (0, 0, 2), DOWN, scale, **{"power": 1.0, **fields})
-    ) as scene:
+    with scene_with(lamp(kind, (0, 0, 2), DOWN, scale, **{"power": 1.0, **fields})) as scene:
         e, _ = irradiance(scene, (0, 0, 0), UP, n=64)
     assert np.isfinite(e).all()
     if not (scale == (0, 0, 0) and kind in (LightType.POINT, LightType.SUN)):

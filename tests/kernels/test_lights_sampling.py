@@ -22,9 +22,7 @@ from opal_kernels.scene import Scene
 UP = (0, 0, 1)
 SIZED = {
     "sphere": lamp(LightType.POINT, (0.5, 0.2, 1.5), radius=0.4, soft_falloff=0),
-    "sphere we stand in": lamp(
-        LightType.POINT, (0.1, 0.0, 0.1), radius=0.8, soft_falloff=0
-    ),
+    "sphere we stand in": lamp(LightType.POINT, (0.1, 0.0, 0.1), radius=0.8, soft_falloff=0),
     "facing disc": lamp(LightType.POINT, (0.5, 0.2, 1.5), radius=0.4, soft_falloff=1),
     "spot": lamp(
         LightType.SPOT,
@@ -35,21 +33,11 @@ SIZED = {
         spot_blend=0.3,
     ),
     "sun": lamp(LightType.SUN, direction=(0.4, 0.1, -1), radius=0.3),
-    "rectangle": lamp(
-        LightType.RECTANGLE, (0.3, 0.1, 0.7), (0.1, -0.3, -1), size_u=1.5, size_v=0.6
-    ),
-    "ellipse": lamp(
-        LightType.ELLIPSE, (0.3, 0.1, 0.7), (0.1, -0.3, -1), size_u=1.5, size_v=0.6
-    ),
-    "rectangle with spread": lamp(
-        LightType.RECTANGLE, (0.3, 0.1, 1.2), size_u=1.5, size_v=0.6, spread=0.9
-    ),
-    "ellipse with spread": lamp(
-        LightType.ELLIPSE, (0.3, 0.1, 1.2), size_u=1.5, size_v=0.9, spread=0.9
-    ),
-    "tiny rectangle": lamp(
-        LightType.RECTANGLE, (0.3, 0.1, 2), size_u=1e-4, size_v=1e-4
-    ),
+    "rectangle": lamp(LightType.RECTANGLE, (0.3, 0.1, 0.7), (0.1, -0.3, -1), size_u=1.5, size_v=0.6),
+    "ellipse": lamp(LightType.ELLIPSE, (0.3, 0.1, 0.7), (0.1, -0.3, -1), size_u=1.5, size_v=0.6),
+    "rectangle with spread": lamp(LightType.RECTANGLE, (0.3, 0.1, 1.2), size_u=1.5, size_v=0.6, spread=0.9),
+    "ellipse with spread": lamp(LightType.ELLIPSE, (0.3, 0.1, 1.2), size_u=1.5, size_v=0.9, spread=0.9),
+    "tiny rectangle": lamp(LightType.RECTANGLE, (0.3, 0.1, 2), size_u=1e-4, size_v=1e-4),
 }
 
 
@@ -66,9 +54,7 @@ def test_pdf_of_a_sampled_direction_is_the_one_that_sampling_returned(name):
     with scene_with(SIZED[name]) as scene:
         s = sample_light(scene, where, numbers(500, 3))
         lit = s["pdf"] > 0
-        pdf = light_pdf(
-            scene, where, s["source"][lit], s["direction"][lit], s["distance"][lit]
-        )
+        pdf = light_pdf(scene, where, s["source"][lit], s["direction"][lit], s["distance"][lit])
     assert lit.any()
     assert pdf == pytest.approx(s["pdf"][lit], rel=2e-3)
 
@@ -93,12 +79,8 @@ def test_irradiance_is_the_same_by_sampling_lights_and_by_sampling_directions(na
 def test_rectangle_is_sampled_uniformly_in_solid_angle(height):
     """Ureña et al. 2013: one density for every direction, the inverse of the solid angle that the rectangle fills."""
     a, b = 1.2, 0.7
-    solid_angle = 4 * np.arctan(
-        a * b / 4 / (height * np.sqrt(height**2 + (a * a + b * b) / 4))
-    )
-    with scene_with(
-        lamp(LightType.RECTANGLE, (0, 0, height), size_u=a, size_v=b)
-    ) as scene:
+    solid_angle = 4 * np.arctan(a * b / 4 / (height * np.sqrt(height**2 + (a * a + b * b) / 4)))
+    with scene_with(lamp(LightType.RECTANGLE, (0, 0, height), size_u=a, size_v=b)) as scene:
         s = sample_light(scene, receiver((0, 0, 0), UP), numbers(2000, 3))
     assert s["pdf"] == pytest.approx(np.full(2000, 1 / solid_angle), rel=1e-4)
 
@@ -118,28 +100,22 @@ def test_uniform_world_is_sampled_by_what_the_receiver_can_take(normal, transmis
     assert again == pytest.approx(s["pdf"], rel=1e-3)
 
 
-def test_importance_map_of_the_world_integrates_to_one_and_follows_the_radiance():
+def test_importance_map_of_the_world_integrates_to_one_and_follows_what_stands_out():
     where = receiver((0, 0, 0), UP)
     with scene_with(world=World(program=direction_program(3.0), map_width=64)) as scene:
         directions = uniform_directions(400_000)
         pdf = light_pdf(scene, where, (2, 0), directions, np.inf)
         s = sample_light(scene, where, numbers(4000, 3))
         lit = s["pdf"] > 0
-        again = light_pdf(
-            scene, where, s["source"][lit], s["direction"][lit], s["distance"][lit]
-        )
-        bright = lights_along(scene, (0, 0, 0), directions)[1] @ (
-            np.array([0.2126729, 0.7151522, 0.0721750]) + 1 / 3
-        )
+        again = light_pdf(scene, where, s["source"][lit], s["direction"][lit], s["distance"][lit])
+        bright = lights_along(scene, (0, 0, 0), directions)[1] @ (np.array([0.2126729, 0.7151522, 0.0721750]) + 1 / 3)
     assert pdf.mean() * 4 * np.pi == pytest.approx(1.0, abs=5e-3)
     assert np.median(np.abs(again / s["pdf"][lit] - 1)) < 1e-4
-    assert np.corrcoef(pdf, bright)[0, 1] > 0.98
+    assert np.corrcoef(pdf, np.clip(bright - bright.mean(), 0, None))[0, 1] > 0.98
 
 
 def emissive_quad(scene, transform, color=(1, 1, 1), copies=1):
-    material = scene.add_material(
-        emission_program(color, 5.0), flags=MaterialFlag.EMISSIVE
-    )
+    material = scene.add_material(emission_program(color, 5.0), flags=MaterialFlag.EMISSIVE)
     mesh = scene.add_mesh(
         [[-0.5, -0.5, 0], [0.5, -0.5, 0], [0.5, 0.5, 0], [-0.5, 0.5, 0]],
         [[0, 1, 2], [0, 2, 3]],
@@ -155,9 +131,7 @@ def emissive_quad(scene, transform, color=(1, 1, 1), copies=1):
 def test_emissive_mesh_gives_what_a_lamp_of_its_shape_gives(height):
     """Solid-angle sampling near by, area sampling far away: radiance 5 from a unit square."""
     power = 5 * np.pi
-    with scene_with(
-        lamp(LightType.RECTANGLE, (0.1, 0.2, height), power=power)
-    ) as scene:
+    with scene_with(lamp(LightType.RECTANGLE, (0.1, 0.2, height), power=power)) as scene:
         expected, _ = irradiance(scene, (0, 0, 0), UP, n=40_000)
         frame = looking((0, 0, -1), (0.1, 0.2, height))
     with Scene(threads=1) as scene:
@@ -203,9 +177,7 @@ def test_choice_among_many_lamps_adds_up_to_one_and_forgets_none(count):
         where = receiver(position, normal)
         s = sample_light(scene, where, numbers(3000, 3))
         lit = (s["pdf"] > 0) & (s["dirac"] == 0)
-        pdf = light_pdf(
-            scene, where, s["source"][lit], s["direction"][lit], s["distance"][lit]
-        )
+        pdf = light_pdf(scene, where, s["source"][lit], s["direction"][lit], s["distance"][lit])
     assert together == pytest.approx(alone, rel=5e-3, abs=4 * error.max())
     assert pdf == pytest.approx(s["pdf"][lit], rel=5e-3)
 
@@ -232,15 +204,9 @@ def test_many_emissive_triangles_give_the_sum_of_their_light():
         expected, _ = irradiance(scene, (0.5, 0.3, 0), UP, n=20_000)
     step = size / n
     centres = (np.arange(n) + 0.5) * step - size / 2
-    frames = [
-        looking((0, 0, -1), (x, y, height), (step, step, 1))
-        for x in centres
-        for y in centres
-    ]
+    frames = [looking((0, 0, -1), (x, y, height), (step, step, 1)) for x in centres for y in centres]
     with Scene(threads=1) as scene:
-        material = scene.add_material(
-            emission_program((1, 1, 1), 2.0), flags=MaterialFlag.EMISSIVE
-        )
+        material = scene.add_material(emission_program((1, 1, 1), 2.0), flags=MaterialFlag.EMISSIVE)
         mesh = scene.add_mesh(
             [[-0.5, -0.5, 0], [0.5, -0.5, 0], [0.5, 0.5, 0], [-0.5, 0.5, 0]],
             [[0, 1, 2], [0, 2, 3]],
@@ -263,8 +229,6 @@ def test_sky_sun_and_lamps_together_are_the_sum_of_each():
     for lamps, world in parts:
         with scene_with(*lamps, world=world) as scene:
             alone += irradiance(scene, (0, 0, 0), UP, n=100_000)[0]
-    with scene_with(
-        *(light for lamps, _ in parts for light in lamps), world=parts[2][1]
-    ) as scene:
+    with scene_with(*(light for lamps, _ in parts for light in lamps), world=parts[2][1]) as scene:
         together, error = irradiance(scene, (0, 0, 0), UP, n=300_000)
     assert together == pytest.approx(alone, rel=5e-3, abs=4 * error.max())
