@@ -24,24 +24,16 @@ def focus_distance(camera_object: Any, matrix: Any) -> float:
     if target is None:
         return dof.focus_distance
     place = target.matrix_world
-    bone = (
-        target.pose.bones.get(dof.focus_subtarget)
-        if target.pose and dof.focus_subtarget
-        else None
-    )
+    bone = target.pose.bones.get(dof.focus_subtarget) if target.pose and dof.focus_subtarget else None
     if bone is not None:
         place = place @ bone.matrix
     return optics.depth_along_axis(matrix, place.translation)
 
 
-def _lens(
-    camera_object: Any, scene: Any, matrix: Any, report: Report
-) -> tuple[dict[str, Any], dict[str, Any]]:
+def _lens(camera_object: Any, scene: Any, matrix: Any, report: Report) -> tuple[dict[str, Any], dict[str, Any]]:
     """Arguments for ``optics.window`` and fields of ``Camera`` that an object looked through gives."""
     data = camera_object.data
-    if (
-        getattr(data, "bl_rna", None) is not None and data.bl_rna.identifier != "Camera"
-    ):  # looking through a lamp
+    if getattr(data, "bl_rna", None) is not None and data.bl_rna.identifier != "Camera":  # looking through a lamp
         spot = getattr(data, "spot_size", math.pi / 2)
         return {"lens": 16.0 / math.tan(0.5 * spot)}, {
             "clip_start": 1e-5,
@@ -68,9 +60,7 @@ def _lens(
     }
     if data.dof.use_dof:
         fields |= {
-            "aperture_radius": optics.aperture_radius(
-                data.dof.aperture_fstop, None if orthographic else data.lens
-            ),
+            "aperture_radius": optics.aperture_radius(data.dof.aperture_fstop, None if orthographic else data.lens),
             "focus_distance": max(focus_distance(camera_object, matrix), 1e-5),
             "blades": data.dof.aperture_blades,
             "blade_rotation": data.dof.aperture_rotation,

@@ -128,6 +128,9 @@ def light_from_object(
     settings = getattr(data, "cycles", None)
     if data.type == "AREA" and getattr(settings, "is_portal", False):
         return None
+    linking = getattr(obj, "light_linking", None)
+    if linking is not None and linking.blocker_collection is not None:
+        report(obj.name, "Opal has no shadow linking: everything casts this lamp's shadow")
     factor = node_factor(data, context, report)
     color = tuple(c * f for c, f in zip(lamp_color(data), factor, strict=True))
     power = data.energy * 2.0 ** getattr(data, "exposure", 0.0)
@@ -193,11 +196,8 @@ class LightLinks:
 
 
 def _identity(obj: Any) -> str:
-    return (
-        getattr(obj, "original", None).name_full
-        if getattr(obj, "original", None) is not None
-        else obj.name_full
-    )
+    original = getattr(obj, "original", None)
+    return (obj if original is None else original).name_full
 
 
 def _rule(collection: Any) -> Callable[[str], bool]:
@@ -209,9 +209,7 @@ def _rule(collection: Any) -> Callable[[str], bool]:
         for obj, link in zip(members.objects, members.collection_objects, strict=False):
             state = inherited or link.light_linking.link_state
             (included if state == "INCLUDE" else excluded).add(_identity(obj))
-        for child, link in zip(
-            members.children, members.collection_children, strict=False
-        ):
+        for child, link in zip(members.children, members.collection_children, strict=False):
             visit(child, inherited or link.light_linking.link_state)
 
     visit(collection, None)

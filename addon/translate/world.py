@@ -49,9 +49,7 @@ def map_width(world: Any) -> int:
         if node.type == "TEX_ENVIRONMENT" and node.image is not None:
             width = max(width, node.image.size[0], SMALLEST_MAP)
         elif node.type == "TEX_SKY":
-            width = max(
-                width, LARGEST_MAP if getattr(node, "sun_disc", False) else USUAL_MAP
-            )
+            width = max(width, LARGEST_MAP if getattr(node, "sun_disc", False) else USUAL_MAP)
         elif node.type.startswith("TEX_") and node.type != "TEX_COORD":
             width = max(width, USUAL_MAP)
         elif node.type == "TEX_COORD":
@@ -82,6 +80,4 @@ def world_from_scene(world: Any, context: Any) -> tuple[World | None, list[Any]]
 
     compiled = compile_world(world, context)
     program = Program(compiled.code, compiled.constants, compiled.n_registers)
-    return World(
-        program=program, visibility=int(visibility(world)), map_width=map_width(world)
-    ), list(compiled.problems)
+    return World(program=program, visibility=int(visibility(world)), map_width=map_width(world)), list(compiled.problems)

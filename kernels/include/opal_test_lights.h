@@ -15,7 +15,7 @@ extern "C" {
 
 typedef struct opal_test_receiver {
   float position[3];
-  float normal[3];      /* zero: a medium */
+  float normal[3]; /* zero: a medium */
   int32_t transmissive;
   int32_t light_group;
 } opal_test_receiver;
@@ -42,7 +42,8 @@ OPAL_EXPORT int32_t opal_test_camera_rays(const opal_camera_desc *camera, int64_
                                           const float *time, float *origin, float *direction, float *range);
 /* How points are seen. Out: film n x 2, importance n (0: not seen), distance n, direction to the camera n x 3. */
 OPAL_EXPORT int32_t opal_test_camera_connect(const opal_camera_desc *camera, int64_t n, const float *points, const float *lens,
-                                             const float *time, float *film, float *importance, float *distance, float *direction);
+                                             const float *time, float *film, float *importance, float *distance,
+                                             float *direction);
 
 #ifdef __cplusplus
 }

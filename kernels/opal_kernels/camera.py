@@ -77,17 +77,11 @@ def window(
     x, y = width * pixel_aspect[0], height * pixel_aspect[1]
     horizontal = fits_horizontally(sensor_fit, x, y)
     if ortho_scale is None:
-        side = (
-            (sensor_height if sensor_fit == "VERTICAL" else sensor_width) / lens
-            if lens > 0
-            else 0.0
-        )
+        side = (sensor_height if sensor_fit == "VERTICAL" else sensor_width) / lens if lens > 0 else 0.0
     else:
         side = ortho_scale
     if not (x > 0 and y > 0 and side > 0 and math.isfinite(side)):
-        raise ValueError(
-            f"A camera needs a frame and a field of view: {width} x {height} pixels, side {side}."
-        )
+        raise ValueError(f"A camera needs a frame and a field of view: {width} x {height} pixels, side {side}.")
     frame_x, frame_y = (side, side * y / x) if horizontal else (side * x / y, side)
     centre_x = shift[0] * side + 2 * offset[0] * frame_x
     centre_y = shift[1] * side + 2 * offset[1] * frame_y
@@ -108,25 +102,17 @@ def rigid(matrix: Sequence[Sequence[float]]) -> np.ndarray:
     m = np.array(matrix, dtype=np.float64)[:3, :4].copy()
     for axis in range(3):
         size = np.linalg.norm(m[:, axis])
-        m[:, axis] = (
-            m[:, axis] / size if size > 0 and np.isfinite(size) else np.eye(3)[axis]
-        )
+        m[:, axis] = m[:, axis] / size if size > 0 and np.isfinite(size) else np.eye(3)[axis]
     return m
 
 
-def depth_along_axis(
-    matrix: Sequence[Sequence[float]], point: Sequence[float]
-) -> float:
+def depth_along_axis(matrix: Sequence[Sequence[float]], point: Sequence[float]) -> float:
     """Distance of a point from a camera, measured along its axis: what focusing on it means."""
     m = rigid(matrix)
-    return float(
-        abs(np.dot(m[:, 2], m[:, 3] - np.asarray(point, dtype=np.float64)[:3]))
-    )
+    return float(abs(np.dot(m[:, 2], m[:, 3] - np.asarray(point, dtype=np.float64)[:3])))
 
 
-def border_region(
-    width: int, height: int, border: tuple[float, float, float, float]
-) -> tuple[int, int, int, int]:
+def border_region(width: int, height: int, border: tuple[float, float, float, float]) -> tuple[int, int, int, int]:
     """Pixels x0, y0, x1, y1 (y up, ends excluded) of a border left, right, bottom, top in fractions of the frame; at least one."""
     left, right, bottom, top = (min(max(b, 0.0), 1.0) for b in border)
     x0, y0 = min(int(left * width), width - 1), min(int(bottom * height), height - 1)

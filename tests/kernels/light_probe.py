@@ -24,9 +24,7 @@ class Receiver(ctypes.Structure):
 
 
 def receiver(position, normal=(0, 0, 0), transmissive=False, light_group=-1):
-    return Receiver(
-        (c_float * 3)(*position), (c_float * 3)(*normal), int(transmissive), light_group
-    )
+    return Receiver((c_float * 3)(*position), (c_float * 3)(*normal), int(transmissive), light_group)
 
 
 def _floats(a):
@@ -92,11 +90,7 @@ def numbers(n, dimensions, seed=1):
         x = (1 + x) ** (1 / (dimensions + 1))
     steps = (1 / x) ** np.arange(1, dimensions + 1)
     start = np.random.default_rng(seed).random(dimensions)
-    return (
-        ((start + np.arange(1, n + 1)[:, None] * steps) % 1.0)
-        .astype(np.float32)
-        .clip(0, 1 - 2**-24)
-    )
+    return ((start + np.arange(1, n + 1)[:, None] * steps) % 1.0).astype(np.float32).clip(0, 1 - 2**-24)
 
 
 def sample_light(scene, where, u):
@@ -121,9 +115,7 @@ def light_pdf(scene, where, source, direction, distance):
     direction = _input(direction, 3)
     n = len(direction)
     source = np.ascontiguousarray(np.broadcast_to(np.asarray(source, np.int32), (n, 2)))
-    distance = np.ascontiguousarray(
-        np.broadcast_to(np.asarray(distance, np.float32), (n,))
-    )
+    distance = np.ascontiguousarray(np.broadcast_to(np.asarray(distance, np.float32), (n,)))
     pdf = np.zeros(n, np.float32)
     _call(
         "opal_test_light_pdf", _handle(scene), ctypes.byref(where), c_int64(n), _ints(source), _floats(direction),
@@ -135,9 +127,7 @@ def light_pdf(scene, where, source, direction, distance):
 def lights_along(scene, origin, direction, ray_kind=EVERY_RAY):
     direction = _input(direction, 3)
     n = len(direction)
-    origin = np.ascontiguousarray(
-        np.broadcast_to(np.asarray(origin, np.float32), (n, 3))
-    )
+    origin = np.ascontiguousarray(np.broadcast_to(np.asarray(origin, np.float32), (n, 3)))
     distance, radiance, source = (
         np.zeros(n, np.float32),
         np.zeros((n, 3), np.float32),
@@ -179,9 +169,7 @@ def looking(direction, position=(0, 0, 0), scale=(1, 1, 1)):
     z = -np.asarray(direction, float) / np.linalg.norm(direction)
     x = np.cross([0.3, 1.0, 0.2], z)
     x /= np.linalg.norm(x)
-    return np.column_stack(
-        [x * scale[0], np.cross(z, x) * scale[1], z * scale[2], position]
-    )
+    return np.column_stack([x * scale[0], np.cross(z, x) * scale[1], z * scale[2], position])
 
 
 def lamp(kind, position=(0, 0, 0), direction=(0, 0, -1), scale=(1, 1, 1), **fields):

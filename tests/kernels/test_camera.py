@@ -22,9 +22,7 @@ BLADES = Camera(
     window=(-0.5, 0.3, -0.1, 0.5), clip_start=0.1, clip_end=100.0, aperture_radius=0.2, focus_distance=3.0, blades=5,
     blade_rotation=0.3, aperture_ratio=2.0, transform=looking((1, 2, -0.5), (3, 4, 5)),
 )  # fmt: skip
-ORTHO = Camera(
-    type=CameraType.ORTHOGRAPHIC, window=(-4, 4, -3, 3), clip_start=0.1, clip_end=100.0
-)
+ORTHO = Camera(type=CameraType.ORTHOGRAPHIC, window=(-4, 4, -3, 3), clip_start=0.1, clip_end=100.0)
 ORTHO_LENS = Camera(
     type=CameraType.ORTHOGRAPHIC,
     window=(-4, 4, -3, 3),
@@ -61,14 +59,8 @@ def struct_of(description):
     ):
         setattr(struct, name, getattr(description, name))
     struct.window[:] = [float(x) for x in description.window]
-    struct.transform[:] = (
-        np.asarray(description.transform, np.float32).reshape(-1)[:12].tolist()
-    )
-    end = (
-        description.transform
-        if description.transform_end is None
-        else description.transform_end
-    )
+    struct.transform[:] = np.asarray(description.transform, np.float32).reshape(-1)[:12].tolist()
+    end = description.transform if description.transform_end is None else description.transform_end
     struct.transform_end[:] = np.asarray(end, np.float32).reshape(-1)[:12].tolist()
     return struct
 
@@ -114,9 +106,7 @@ def test_pinhole_rays_pass_through_the_window():
     origin, direction, span = rays(PINHOLE, [[0, 0], [1, 1], [0.5, 0.5], [0.75, 0.5]])
     assert np.abs(origin).max() == 0
     through = direction / -direction[:, 2:]
-    assert through[:, :2] == pytest.approx(
-        np.array([[-0.4, -0.3], [0.4, 0.3], [0, 0], [0.2, 0]]), abs=1e-6
-    )
+    assert through[:, :2] == pytest.approx(np.array([[-0.4, -0.3], [0.4, 0.3], [0, 0], [0.2, 0]]), abs=1e-6)
     # Clipping is by planes.
     assert -direction[:, 2] * span[:, 0] == pytest.approx(np.full(4, 0.1), rel=1e-5)
     assert -direction[:, 2] * span[:, 1] == pytest.approx(np.full(4, 100.0), rel=1e-5)
@@ -125,9 +115,7 @@ def test_pinhole_rays_pass_through_the_window():
 def test_orthographic_rays_are_parallel_and_start_at_the_near_plane():
     origin, direction, span = rays(ORTHO, [[0, 0], [1, 1], [0.5, 0.25]])
     assert direction == pytest.approx(np.tile([0, 0, -1], (3, 1)))
-    assert origin == pytest.approx(
-        np.array([[-4, -3, -0.1], [4, 3, -0.1], [0, -1.5, -0.1]]), abs=1e-5
-    )
+    assert origin == pytest.approx(np.array([[-4, -3, -0.1], [4, 3, -0.1], [0, -1.5, -0.1]]), abs=1e-5)
     assert span == pytest.approx(np.tile([0, 99.9], (3, 1)), rel=1e-5)
 
 
@@ -138,11 +126,7 @@ def test_every_point_of_the_lens_sees_the_same_point_of_the_plane_in_focus(descr
     axis = -np.asarray(description.transform, float).reshape(-1, 4)[:3, 2]
     position = np.asarray(description.transform, float).reshape(-1, 4)[:3, 3]
     depth = (origin - position) @ axis
-    at = (
-        origin
-        + direction
-        * ((description.focus_distance - depth) / (direction @ axis))[:, None]
-    )
+    at = origin + direction * ((description.focus_distance - depth) / (direction @ axis))[:, None]
     assert np.ptp(at, axis=0).max() < 2e-5
     assert np.ptp(origin, axis=0).max() > 0.05
 
@@ -155,12 +139,8 @@ def test_aperture_is_a_regular_polygon_filled_evenly():
     inner = np.cos(np.pi / 5)
     assert radius.max() <= 1 + 1e-5
     # Second moment of a regular n-gon of circumradius 1: (2 + cos(2 pi / n)) / 6.
-    assert np.mean(radius**2) == pytest.approx(
-        (2 + np.cos(2 * np.pi / 5)) / 6, rel=2e-3
-    )
-    assert np.mean(radius < 0.5 * inner) == pytest.approx(
-        np.pi * (0.5 * inner) ** 2 / (2.5 * np.sin(2 * np.pi / 5)), rel=2e-2
-    )
+    assert np.mean(radius**2) == pytest.approx((2 + np.cos(2 * np.pi / 5)) / 6, rel=2e-3)
+    assert np.mean(radius < 0.5 * inner) == pytest.approx(np.pi * (0.5 * inner) ** 2 / (2.5 * np.sin(2 * np.pi / 5)), rel=2e-2)
     assert np.abs(p.mean(axis=0)).max() < 5e-3
 
 
@@ -178,9 +158,7 @@ def test_a_point_on_a_ray_connects_to_the_film_where_the_ray_began(name):
     film, lens, time = u[:, :2], u[:, 2:4], u[:, 4]
     origin, direction, span = rays(ALL[name], film, lens, time)
     t = span[:, 0] + 0.5 + 10 * u[:, 5]
-    seen, importance, distance, back = connect(
-        ALL[name], origin + direction * t[:, None], lens, time
-    )
+    seen, importance, distance, back = connect(ALL[name], origin + direction * t[:, None], lens, time)
     assert seen == pytest.approx(film, abs=2e-4)
     assert (importance > 0).all()
     assert back == pytest.approx(-direction, abs=1e-4)
@@ -222,9 +200,7 @@ def test_importance_is_the_share_of_the_frame_that_a_surface_fills(name):
     assert share == pytest.approx(covered, rel=0.01)
 
 
-@pytest.mark.parametrize(
-    "point", [(0, 0, 1), (0, 0, -0.05), (0, 0, -200), (5, 0, -1), (np.nan, 0, -1)]
-)
+@pytest.mark.parametrize("point", [(0, 0, 1), (0, 0, -0.05), (0, 0, -200), (5, 0, -1), (np.nan, 0, -1)])
 @pytest.mark.parametrize("description", [PINHOLE, LENS, ORTHO])
 def test_points_behind_clipped_or_outside_are_not_seen(point, description):
     assert connect(description, [np.multiply(point, (10, 1, 1))])[1][0] == 0
@@ -232,48 +208,32 @@ def test_points_behind_clipped_or_outside_are_not_seen(point, description):
 
 def test_moving_camera_goes_from_one_place_to_the_other_and_keeps_its_shape():
     origin, direction, _ = rays(MOVING, np.full((3, 2), 0.5), time=[0, 0.5, 1])
-    assert origin == pytest.approx(
-        np.array([[0, 0, 0], [0.5, 0, 0], [1, 0, 0]]), abs=1e-6
-    )
+    assert origin == pytest.approx(np.array([[0, 0, 0], [0.5, 0, 0], [1, 0, 0]]), abs=1e-6)
     ends = np.array([[0, 1, 0], [0.2, 1, 0.1] / np.linalg.norm([0.2, 1, 0.1])])
     assert direction[[0, 2]] == pytest.approx(ends, abs=1e-6)
     _, corner, _ = rays(MOVING, [[0, 0], [1, 0]], time=[0.5, 0.5])
-    assert np.dot(corner[0], corner[1]) == pytest.approx(
-        (1 - 0.16 + 0.09) / (1 + 0.16 + 0.09), abs=1e-5
-    )
+    assert np.dot(corner[0], corner[1]) == pytest.approx((1 - 0.16 + 0.09) / (1 + 0.16 + 0.09), abs=1e-5)
 
 
 # ---- The arithmetic of lenses ----
 
 
 def test_window_of_a_lens_spans_its_sensor_over_the_longer_side():
-    assert camera.window(1920, 1080, lens=50, sensor_width=36) == pytest.approx(
-        (-0.36, 0.36, -0.2025, 0.2025)
-    )
-    assert camera.window(1080, 1920, lens=50, sensor_width=36) == pytest.approx(
-        (-0.2025, 0.2025, -0.36, 0.36)
-    )
-    vertical = camera.window(
-        1920, 1080, lens=50, sensor_width=36, sensor_height=24, sensor_fit="VERTICAL"
-    )
+    assert camera.window(1920, 1080, lens=50, sensor_width=36) == pytest.approx((-0.36, 0.36, -0.2025, 0.2025))
+    assert camera.window(1080, 1920, lens=50, sensor_width=36) == pytest.approx((-0.2025, 0.2025, -0.36, 0.36))
+    vertical = camera.window(1920, 1080, lens=50, sensor_width=36, sensor_height=24, sensor_fit="VERTICAL")
     assert vertical == pytest.approx((-0.24 * 16 / 9, 0.24 * 16 / 9, -0.24, 0.24))
-    horizontal = camera.window(
-        1080, 1920, lens=50, sensor_width=36, sensor_fit="HORIZONTAL"
-    )
+    horizontal = camera.window(1080, 1920, lens=50, sensor_width=36, sensor_fit="HORIZONTAL")
     assert horizontal == pytest.approx((-0.36, 0.36, -0.64, 0.64))
 
 
 def test_shift_moves_the_window_by_fractions_of_the_fitted_side():
-    assert camera.window(
-        200, 100, lens=36, sensor_width=36, shift=(0.1, -0.2)
-    ) == pytest.approx((-0.4, 0.6, -0.45, 0.05))
+    assert camera.window(200, 100, lens=36, sensor_width=36, shift=(0.1, -0.2)) == pytest.approx((-0.4, 0.6, -0.45, 0.05))
 
 
 def test_orthographic_scale_is_the_longer_side():
     assert camera.window(200, 100, ortho_scale=6.0) == pytest.approx((-3, 3, -1.5, 1.5))
-    assert camera.window(100, 200, ortho_scale=6.0, shift=(0.5, 0)) == pytest.approx(
-        (1.5, 4.5, -3, 3)
-    )
+    assert camera.window(100, 200, ortho_scale=6.0, shift=(0.5, 0)) == pytest.approx((1.5, 4.5, -3, 3))
 
 
 def test_wide_pixels_widen_the_frame():
@@ -281,9 +241,7 @@ def test_wide_pixels_widen_the_frame():
     assert wide == pytest.approx((-0.5, 0.5, -0.25, 0.25))
 
 
-@pytest.mark.parametrize(
-    "bad", [{"lens": 0.0}, {"ortho_scale": 0.0}, {"ortho_scale": float("nan")}]
-)
+@pytest.mark.parametrize("bad", [{"lens": 0.0}, {"ortho_scale": 0.0}, {"ortho_scale": float("nan")}])
 def test_an_empty_field_of_view_is_refused(bad):
     with pytest.raises(ValueError, match="field of view"):
         camera.window(100, 100, **bad)
@@ -301,9 +259,7 @@ def test_aperture_of_a_lens_is_half_its_focal_length_over_the_f_number():
 
 
 def test_focus_on_a_point_is_measured_along_the_axis():
-    assert camera.depth_along_axis(
-        looking((1, 0, 0), (1, 1, 1)), (5, 9, -3)
-    ) == pytest.approx(4.0)
+    assert camera.depth_along_axis(looking((1, 0, 0), (1, 1, 1)), (5, 9, -3)) == pytest.approx(4.0)
 
 
 @pytest.mark.parametrize(

@@ -42,9 +42,7 @@ def boards():
     for number, (location, size, color) in enumerate(BOARDS):
         h = size / 2
         mesh = bpy.data.meshes.new(f"board {number}")
-        mesh.from_pydata(
-            [(-h, -h, 0), (h, -h, 0), (h, h, 0), (-h, h, 0)], [], [(0, 1, 2, 3)]
-        )
+        mesh.from_pydata([(-h, -h, 0), (h, -h, 0), (h, h, 0), (-h, h, 0)], [], [(0, 1, 2, 3)])
         mesh.materials.append(glow(color))
         obj = bpy.data.objects.new(mesh.name, mesh)
         obj.location = location
@@ -68,9 +66,7 @@ def camera(dof=None, **settings):
 def check(render, size=(36, 24)):
     scene = bpy.context.scene
     one, two, ours = (
-        np.asarray(render(scene, engine, size, SAMPLES, seed), dtype=np.float64)[
-            ..., :3
-        ]
+        np.asarray(render(scene, engine, size, SAMPLES, seed), dtype=np.float64)[..., :3]
         for engine, seed in (("CYCLES", 1), ("CYCLES", 2), ("OPAL", 3))
     )
     theirs = 0.5 * (one + two)
@@ -80,9 +76,7 @@ def check(render, size=(36, 24)):
     # An edge pixel is a fraction of hits among the samples: its standard error is at most 1 / (2 sqrt n), less in practice.
     difference = np.abs(ours - theirs)
     worst = 5 * 0.5 / math.sqrt(SAMPLES)
-    assert difference.max() < worst, (
-        f"pixel {np.unravel_index(difference.argmax(), difference.shape)}"
-    )
+    assert difference.max() < worst, f"pixel {np.unravel_index(difference.argmax(), difference.shape)}"
     assert np.sqrt(np.mean(difference**2)) < 2.5 * max(np.std(one - two), 2e-3)
 
 
@@ -159,9 +153,7 @@ def test_depth_of_field(opal, render, dof):
 
 def test_orthographic_depth_of_field(opal, render):
     boards()
-    camera(
-        {"focus_distance": 3.0, "aperture_fstop": 4.0}, type="ORTHO", ortho_scale=1.8
-    )
+    camera({"focus_distance": 3.0, "aperture_fstop": 4.0}, type="ORTHO", ortho_scale=1.8)
     check(render)
 
 
@@ -179,9 +171,7 @@ def test_pixel_filters_blur_alike(opal, render, kind):
     boards()
     camera()
     scene = bpy.context.scene
-    width = (
-        1.0 if kind == "BOX" else 2.0
-    )  # in Cycles a box is one pixel wide whatever the width says
+    width = 1.0 if kind == "BOX" else 2.0  # in Cycles a box is one pixel wide whatever the width says
     scene.cycles.pixel_filter_type, scene.cycles.filter_width = kind, width
     scene.opal.pixel_filter, scene.opal.filter_width = kind, width
     check(render)

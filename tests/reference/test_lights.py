@@ -36,9 +36,7 @@ def grey(name="grey", value=0.5):
 def board(name, size, location=(0, 0, 0), rotation=(0, 0, 0), material=None):
     h = size / 2
     mesh = bpy.data.meshes.new(name)
-    mesh.from_pydata(
-        [(-h, -h, 0), (h, -h, 0), (h, h, 0), (-h, h, 0)], [], [(0, 1, 2, 3)]
-    )
+    mesh.from_pydata([(-h, -h, 0), (h, -h, 0), (h, h, 0), (-h, h, 0)], [], [(0, 1, 2, 3)])
     mesh.materials.append(material)
     obj = bpy.data.objects.new(name, mesh)
     obj.location, obj.rotation_euler = location, rotation
@@ -100,32 +98,19 @@ def stage():
 def measured(render, engine, seed):
     scene = bpy.context.scene
     scene.cycles.max_bounces = 8
-    return np.asarray(render(scene, engine, SIZE, SAMPLES, seed), dtype=np.float64)[
-        ..., :3
-    ]
+    return np.asarray(render(scene, engine, SIZE, SAMPLES, seed), dtype=np.float64)[..., :3]
 
 
 def check(render, tolerance=3e-3):
-    theirs, again, ours = (
-        measured(render, e, s) for e, s in (("CYCLES", 1), ("CYCLES", 2), ("OPAL", 3))
-    )
-    noise = np.std(theirs - again) / math.sqrt(
-        2 * theirs[..., 0].size
-    )  # of the mean of one render
+    theirs, again, ours = (measured(render, e, s) for e, s in (("CYCLES", 1), ("CYCLES", 2), ("OPAL", 3)))
+    noise = np.std(theirs - again) / math.sqrt(2 * theirs[..., 0].size)  # of the mean of one render
     mean, allowed = 0.5 * (theirs + again).mean(axis=(0, 1)), 4 * noise
     found = ours.mean(axis=(0, 1))
     assert mean.max() > 1e-3, "the scene is dark"
-    assert found == pytest.approx(mean, rel=tolerance, abs=allowed), (
-        f"Opal / Cycles = {found / mean}"
-    )
+    assert found == pytest.approx(mean, rel=tolerance, abs=allowed), f"Opal / Cycles = {found / mean}"
     # Nothing is in another place: blocks of 8 x 8 pixels agree as well.
-    blocks = [
-        x.reshape(3, 8, 4, 8, 3).mean(axis=(1, 3))
-        for x in (ours, 0.5 * (theirs + again))
-    ]
-    assert blocks[0] == pytest.approx(
-        blocks[1], rel=0.02, abs=0.01 * mean.max() + 8 * allowed
-    )
+    blocks = [x.reshape(3, 8, 4, 8, 3).mean(axis=(1, 3)) for x in (ours, 0.5 * (theirs + again))]
+    assert blocks[0] == pytest.approx(blocks[1], rel=0.02, abs=0.01 * mean.max() + 8 * allowed)
 
 
 LAMPS = {
@@ -216,14 +201,7 @@ def test_lamp_lights_the_floor_as_in_cycles(opal, render, name):
     kind, settings = LAMPS[name]
     lamp(
         kind,
-        **(
-            {"shadow_soft_size": 0.0}
-            if kind in {"POINT", "SPOT"}
-            else {"angle": 0.0}
-            if kind == "SUN"
-            else {}
-        )
-        | settings,
+        **({"shadow_soft_size": 0.0} if kind in {"POINT", "SPOT"} else {"angle": 0.0} if kind == "SUN" else {}) | settings,
     )
     check(render)
 
@@ -233,11 +211,7 @@ def test_lamps_under_uneven_scale(opal, render, kind):
     stage()
     world()
     camera()
-    settings = (
-        {"spot_size": 0.9, "shadow_soft_size": 0.0}
-        if kind == "SPOT"
-        else {"shape": "RECTANGLE", "size": 0.4, "size_y": 0.4}
-    )
+    settings = {"spot_size": 0.9, "shadow_soft_size": 0.0} if kind == "SPOT" else {"shape": "RECTANGLE", "size": 0.4, "size_y": 0.4}
     lamp(kind, scale=(2.0, 0.7, 1.3), energy=80, **settings)
     check(render)
 
@@ -261,9 +235,7 @@ def test_lamp_looks_as_in_cycles(opal, render, name):
         lamp(kind, rotation=(0.05, 0.02, 0), **settings).visible_camera = True
         camera((0, 0, 0), (math.pi + 0.1, 0, 0))
     else:
-        lamp(
-            kind, (0, 0, 2), (0.1, 0.2, 0), **settings
-        ).visible_camera = True  # Blender hides new lamps
+        lamp(kind, (0, 0, 2), (0.1, 0.2, 0), **settings).visible_camera = True  # Blender hides new lamps
         camera((0.1, 0.0, -0.5), (math.pi, 0, 0))
     check(render, 0.01)
 
@@ -272,12 +244,8 @@ def test_lamp_hidden_from_the_camera(opal, render):
     stage()
     world()
     camera((0.3, 0.2, 5), (0, 0, 0))
-    lamp(
-        "AREA", (0.3, 0.2, 3), (math.pi, 0, 0), energy=20, size=0.4
-    ).visible_camera = True  # looks up, at the camera
-    lamp(
-        "AREA", (0.3, 0.2, 3.5), (math.pi, 0, 0), energy=20, size=1.0
-    ).visible_camera = False
+    lamp("AREA", (0.3, 0.2, 3), (math.pi, 0, 0), energy=20, size=0.4).visible_camera = True  # looks up, at the camera
+    lamp("AREA", (0.3, 0.2, 3.5), (math.pi, 0, 0), energy=20, size=1.0).visible_camera = False
     lamp("AREA", (0.3, 0.2, 3), energy=20, size=0.3).visible_camera = False
     check(render)
 

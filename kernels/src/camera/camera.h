@@ -30,8 +30,8 @@ bool generate_ray(const opal_camera_desc &camera, float x, float y, Vec2 lens, f
 // width x height counts the pixels of the full frame. In formulas, with A the window's area and theta the angle between
 // ray and axis: perspective 1/(A cos^3(theta) d^2), A at distance 1; orthographic 1/(A cos(theta)).
 struct CameraConnection {
-  Vec3 to_camera;        // unit, from p
-  float distance = 0;    // to the near clipping plane: how far the shadow ray goes
+  Vec3 to_camera;           // unit, from p
+  float distance = 0;       // to the near clipping plane: how far the shadow ray goes
   float lens_distance = 0;  // to the lens: the depth of p along the ray
   float film_x = 0, film_y = 0;
   float importance = 0;
@@ -39,8 +39,8 @@ struct CameraConnection {
 
 // False where p is outside the frame, behind the camera or clipped. `margin` widens the frame, as a fraction of its size, so
 // that pixel filters reach over its border.
-bool connect(const opal_camera_desc &camera, const Vec3 &p, Vec2 lens, float time, CameraConnection &out,
-             float margin_x = 0, float margin_y = 0);
+bool connect(const opal_camera_desc &camera, const Vec3 &p, Vec2 lens, float time, CameraConnection &out, float margin_x = 0,
+             float margin_y = 0);
 
 // Camera to world at `time`.
 Transform camera_transform(const opal_camera_desc &camera, float time);

@@ -39,7 +39,8 @@ DirectionAim::DirectionAim(const Vec3 &x, const Emitter &emitter, const std::vec
     }
     if (part.whole && d2 <= sqr(radius))
       part.weight = emitter.kind == Emitter::Kind::Everywhere ? cone_solid_angle(emitter.cone_omc)
-                    : emitter.kind == Emitter::Kind::OneSided ? kPi : 2 * kPi;
+                    : emitter.kind == Emitter::Kind::OneSided ? kPi
+                                                              : 2 * kPi;
     parts_[count_++] = part;
     total_ += part.weight;
   }
@@ -48,7 +49,8 @@ DirectionAim::DirectionAim(const Vec3 &x, const Emitter &emitter, const std::vec
 float DirectionAim::density(const Part &part, const Vec3 &d) const {
   if (!part.whole) return in_cone(d, part.axis, part.omc) ? 1 / cone_solid_angle(part.omc) : 0.0f;
   const float cosine = dot(d, emitter_.axis);
-  if (emitter_.cone_omc < 2) return in_cone(d, emitter_.axis, emitter_.cone_omc) ? 1 / cone_solid_angle(emitter_.cone_omc) : 0.0f;
+  if (emitter_.cone_omc < 2)
+    return in_cone(d, emitter_.axis, emitter_.cone_omc) ? 1 / cone_solid_angle(emitter_.cone_omc) : 0.0f;
   switch (emitter_.kind) {
     case Emitter::Kind::OneSided: return std::max(cosine, 0.0f) * kInvPi;
     case Emitter::Kind::TwoSided: return std::abs(cosine) * 0.5f * kInvPi;

@@ -16,8 +16,8 @@ inline constexpr int kMostTargets = 64;
 // What the emitter sends: decides which directions are worth sampling.
 struct Emitter {
   enum class Kind { Everywhere, OneSided, TwoSided } kind = Kind::Everywhere;
-  Vec3 axis;             // normal, or the axis of a spot
-  float cone_omc = 2;    // light stays within this cone round the axis (1 - cos)
+  Vec3 axis;           // normal, or the axis of a spot
+  float cone_omc = 2;  // light stays within this cone round the axis (1 - cos)
 };
 
 class DirectionAim {

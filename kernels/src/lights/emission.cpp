@@ -138,7 +138,9 @@ const EmissionTable &other_table(const Scene &scene, const std::vector<EmissionT
     EmissionTable table;
   };
   thread_local Kept kept;
-  const auto equal = [](const EmissionTarget &a, const EmissionTarget &b) { return a.centre == b.centre && a.radius == b.radius; };
+  const auto equal = [](const EmissionTarget &a, const EmissionTarget &b) {
+    return a.centre == b.centre && a.radius == b.radius;
+  };
   if (kept.lights != scene.lights ||
       !std::equal(targets.begin(), targets.end(), kept.table.targets.begin(), kept.table.targets.end(), equal)) {
     kept.lights = scene.lights;
@@ -200,9 +202,9 @@ bool sample_emission(const Scene &scene, const std::vector<EmissionTarget> &targ
                      float time, const Wavelengths &w, EmissionSample &out) {
   if (!scene.lights) return false;
   const LightTables &lights = *scene.lights;
-  const EmissionTable &table = targets.empty()                ? lights.to_scene
-                               : &targets == &scene.casters   ? lights.to_casters
-                                                              : other_table(scene, targets);
+  const EmissionTable &table = targets.empty()              ? lights.to_scene
+                               : &targets == &scene.casters ? lights.to_casters
+                                                            : other_table(scene, targets);
   float probability = 0;
   if (!table.choose(pick.x, out.source, probability)) return false;
   Emission e;
@@ -220,7 +222,8 @@ bool sample_emission(const Scene &scene, const std::vector<EmissionTarget> &targ
       break;
     }
     case SourceKind::Triangle:
-      emitted = emit_triangle(scene, scene.emissive[out.source.index], table.targets, pick, position, direction, time, w, e, spectrum);
+      emitted = emit_triangle(scene, scene.emissive[out.source.index], table.targets, pick, position, direction, time, w, e,
+                              spectrum);
       break;
     case SourceKind::World:
       emitted = emit_world(scene, lights.world, table.targets, pick, position, direction, w, e, spectrum);

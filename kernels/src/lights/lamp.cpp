@@ -72,8 +72,9 @@ LampModel make_lamp(const opal_light_desc &desc) {
   lamp.position = t.origin();
   lamp.axis = safe_normalize(-t.axis(2), {0, 0, -1});
   lamp.colour = {desc.color[0], desc.color[1], desc.color[2]};
-  lamp.valid = lamp.is_area() ? describe_area(desc, t, lamp)
-               : lamp.type == OPAL_LIGHT_SUN ? describe_sun(desc, lamp) : describe_round(desc, t, lamp);
+  lamp.valid = lamp.is_area()                ? describe_area(desc, t, lamp)
+               : lamp.type == OPAL_LIGHT_SUN ? describe_sun(desc, lamp)
+                                             : describe_round(desc, t, lamp);
   // The mean keeps saturated blue from counting for next to nothing.
   const Vec3 c = lamp.colour;
   lamp.brightness = 0.5f * std::abs(luminance(c)) + (std::abs(c.x) + std::abs(c.y) + std::abs(c.z)) / 6;

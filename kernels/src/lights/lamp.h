@@ -15,18 +15,18 @@ namespace opal {
 
 struct LampModel {
   int type = OPAL_LIGHT_POINT;
-  bool valid = false;           // finite, not singular, not black
-  bool sphere = false;          // point, spot: a sphere, not a disc that faces who looks
+  bool valid = false;   // finite, not singular, not black
+  bool sphere = false;  // point, spot: a sphere, not a disc that faces who looks
   bool ellipse = false;
   uint32_t visibility = OPAL_RAY_ALL;
   bool cast_shadow = true, caustics = true;
   uint64_t receivers = ~uint64_t(0);
-  Vec3 position, axis;          // axis: where it looks; sun: where its light goes
-  Vec3 u, v;                    // area: unit, perpendicular
+  Vec3 position, axis;  // axis: where it looks; sun: where its light goes
+  Vec3 u, v;            // area: unit, perpendicular
   float half_u = 0, half_v = 0, area = 0;
   float radius = 0;
-  float radiance = 0;           // of shapes with a size, per unit of colour
-  float intensity = 0;          // point, spot: on the axis; area: on the axis; sun: irradiance
+  float radiance = 0;   // of shapes with a size, per unit of colour
+  float intensity = 0;  // point, spot: on the axis; area: on the axis; sun: irradiance
   // Spot
   Transform to_local;
   float cos_half = -1, inverse_blend = 0, cone_omc = 2;  // cone_omc: 1 - cos of the whole cone, transform's scale included
@@ -37,8 +37,8 @@ struct LampModel {
   float sun_omc = 0;
   // Colour
   Vec3 colour;
-  int table = -1;               // into LightTables::lamp_tables
-  float brightness = 0;         // luminance of the colour, absolute, for importance
+  int table = -1;        // into LightTables::lamp_tables
+  float brightness = 0;  // luminance of the colour, absolute, for importance
 
   bool has_size() const { return type == OPAL_LIGHT_SUN ? sun_omc > 0 : radius > 0 || (area > 0 && !parallel()); }
   bool parallel() const { return has_spread && tan_spread < 1e-5f; }
@@ -52,8 +52,8 @@ LampModel make_lamp(const opal_light_desc &desc);
 struct LampSample {
   Vec3 wi;
   float distance = kInfinity;
-  float value = 0;     // radiance, or irradiance for Dirac lamps
-  float pdf = 0;       // solid angle; Dirac: 1
+  float value = 0;  // radiance, or irradiance for Dirac lamps
+  float pdf = 0;    // solid angle; Dirac: 1
   bool dirac = false;
 };
 bool sample_lamp(const LampModel &lamp, const Vec3 &p, Vec2 u, LampSample &out);

@@ -49,8 +49,9 @@ LightBounds bounds_of(const EmissiveTriangle &t) {
 SpectralTable scaled_table(const Scene &scene, const SpectralTable &relative, const Vec3 &colour) {
   double y = 0;
   for (int i = 0; i < kTableSize; ++i)
-    y += double(relative[size_t(i)]) * luminance({scene.colour.rgb_response[0][size_t(i)], scene.colour.rgb_response[1][size_t(i)],
-                                                  scene.colour.rgb_response[2][size_t(i)]});
+    y += double(relative[size_t(i)]) *
+         luminance({scene.colour.rgb_response[0][size_t(i)], scene.colour.rgb_response[1][size_t(i)],
+                    scene.colour.rgb_response[2][size_t(i)]});
   SpectralTable out;
   const double scale = y > 0 ? luminance(colour) / y : 0;
   for (int i = 0; i < kTableSize; ++i) out[size_t(i)] = float(relative[size_t(i)] * scale);
@@ -107,7 +108,8 @@ std::shared_ptr<LightTables> build_light_tables(const Scene &scene) {
     t.near_bounds.shrink_to_fit();
   }
   t.to_casters.build(scene, t, scene.casters, true);
-  if (!scene.bounds.empty()) t.to_scene.build(scene, t, {{scene.bounds.centre(), scene.bounds.radius() * 1.001f + 1e-6f}}, false);
+  if (!scene.bounds.empty())
+    t.to_scene.build(scene, t, {{scene.bounds.centre(), scene.bounds.radius() * 1.001f + 1e-6f}}, false);
   return tables;
 }
 

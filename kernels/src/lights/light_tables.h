@@ -20,11 +20,11 @@ struct LightTables {
   // Sources for sampling. Far ones (suns, the world) are weighed one by one; near ones through the tree, or one by one
   // as well while there are few.
   std::vector<SourceId> far;
-  std::vector<SourceId> near;              // leaves of the tree
-  std::vector<LightBounds> near_bounds;    // kept while they are few
+  std::vector<SourceId> near;                            // leaves of the tree
+  std::vector<LightBounds> near_bounds;                  // kept while they are few
   std::vector<uint32_t> near_of_lamp, near_of_triangle;  // index into near, kNoSource
   LightTree tree;
-  std::vector<uint32_t> sized;             // lamps that rays can meet
+  std::vector<uint32_t> sized;  // lamps that rays can meet
 
   EmissionTable to_casters, to_scene;
 };

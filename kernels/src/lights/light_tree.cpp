@@ -10,8 +10,8 @@ namespace opal {
 namespace {
 
 constexpr int kBuckets = 12;
-constexpr int kDeepest = 48;             // deeper nodes split in the middle
-constexpr size_t kOneAxisAbove = 4096;   // larger groups look at their longest axis only
+constexpr int kDeepest = 48;            // deeper nodes split in the middle
+constexpr size_t kOneAxisAbove = 4096;  // larger groups look at their longest axis only
 
 float safe_acos(float x) { return std::acos(clamp(x, -1, 1)); }
 

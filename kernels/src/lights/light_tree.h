@@ -16,12 +16,12 @@ namespace opal {
 
 struct LightBounds {
   Bounds box;
-  Vec3 axis{0, 0, 1};       // of the cone that holds every emitter's normal
-  float theta_o = 0;        // half angle of that cone
-  float theta_e = 0;        // how far beyond the normals light leaves
-  float power = 0;          // irradiance at distance 1 on a facing plane, summed
+  Vec3 axis{0, 0, 1};  // of the cone that holds every emitter's normal
+  float theta_o = 0;   // half angle of that cone
+  float theta_e = 0;   // how far beyond the normals light leaves
+  float power = 0;     // irradiance at distance 1 on a facing plane, summed
   bool two_sided = false;
-  uint64_t receivers = 0;   // light linking: sets lit by any of them
+  uint64_t receivers = 0;                 // light linking: sets lit by any of them
   float sin_o = 0, cos_o = 1, cos_e = 1;  // of the angles above, by finish()
 
   void finish();
@@ -63,7 +63,7 @@ class LightTree {
   struct Node {
     LightBounds bounds;
     uint32_t parent = 0;
-    uint32_t right = 0;   // the left child follows its parent; 0: a leaf
+    uint32_t right = 0;  // the left child follows its parent; 0: a leaf
     uint32_t light = 0;
   };
   uint32_t build_node(std::vector<uint32_t> &order, size_t first, size_t last, uint32_t parent, int depth,

@@ -26,11 +26,11 @@ struct SourceId {
 };
 
 struct LightSample {
-  Vec3 wi;               // towards the light
-  float distance = 0;    // infinite for sun and world
-  Spectrum radiance;     // arriving, before visibility; for Dirac lights: irradiance perpendicular to wi per unit pdf
-  float pdf = 0;         // solid angle, with the probability of choosing this source; Dirac: that probability alone
-  bool dirac = false;    // no ray can hit it by chance
+  Vec3 wi;             // towards the light
+  float distance = 0;  // infinite for sun and world
+  Spectrum radiance;   // arriving, before visibility; for Dirac lights: irradiance perpendicular to wi per unit pdf
+  float pdf = 0;       // solid angle, with the probability of choosing this source; Dirac: that probability alone
+  bool dirac = false;  // no ray can hit it by chance
   bool cast_shadow = true;
   uint32_t visibility = ~0u;  // OPAL_RAY_* bits: a lobe whose kind of ray may not see the lamp is not lit by it
   SourceId source;
@@ -60,8 +60,8 @@ struct EscapedRadiance {
   SourceId source;
   Spectrum radiance;
 };
-int escaped_radiance(const Scene &scene, const Vec3 &direction, uint32_t ray_kind, const Wavelengths &w,
-                     EscapedRadiance *out, int capacity);
+int escaped_radiance(const Scene &scene, const Vec3 &direction, uint32_t ray_kind, const Wavelengths &w, EscapedRadiance *out,
+                     int capacity);
 
 // ---- Emission, for photons ----
 
@@ -72,10 +72,10 @@ struct EmissionTarget {
 };
 struct EmissionSample {
   Ray ray;
-  Spectrum flux;        // emitted power / pdf: what one photon of M carries is flux / M
-  Vec3 normal;          // of the source; zero where it has none
+  Spectrum flux;  // emitted power / pdf: what one photon of M carries is flux / M
+  Vec3 normal;    // of the source; zero where it has none
   SourceId source;
-  Vec3 centre;          // with soft_radius: of the lamp
+  Vec3 centre;  // with soft_radius: of the lamp
   float soft_radius = 0;
 };
 // Whether the photon counts at the first thing that it meets. A lamp with soft falloff is a disc that faces whatever it
@@ -85,8 +85,8 @@ bool emission_reaches(const EmissionSample &sample, const Vec3 &p);
 // Emits one photon. With targets, only directions that can meet one of them are sampled (probability counted exactly,
 // overlaps included); without, the whole emission into the scene's bounding sphere. A photon for which false is returned
 // carries nothing; it counts among the M all the same. Fastest with Scene::casters itself or an empty vector.
-bool sample_emission(const Scene &scene, const std::vector<EmissionTarget> &targets, Vec2 pick, Vec2 position,
-                     Vec2 direction, float time, const Wavelengths &w, EmissionSample &out);
+bool sample_emission(const Scene &scene, const std::vector<EmissionTarget> &targets, Vec2 pick, Vec2 position, Vec2 direction,
+                     float time, const Wavelengths &w, EmissionSample &out);
 
 // Built by opal_scene_commit from the scene's lamps, emissive triangles and world.
 struct LightTables;

@@ -32,14 +32,17 @@ Vec3 integrate(const AllWavelengths &all, const Ask &ask) {
 
 Vec3 load(const float *v) { return {v[0], v[1], v[2]}; }
 void store(const Vec3 &v, float *out) { out[0] = v.x, out[1] = v.y, out[2] = v.z; }
-void store(const SourceId &id, int32_t *out) { out[0] = id.kind == SourceKind::None ? -1 : int32_t(id.kind), out[1] = int32_t(id.index); }
+void store(const SourceId &id, int32_t *out) {
+  out[0] = id.kind == SourceKind::None ? -1 : int32_t(id.kind), out[1] = int32_t(id.index);
+}
 
 }  // namespace
 
 extern "C" {
 
 int32_t opal_test_sample_light(const opal_scene *scene, const opal_test_receiver *r, int64_t n, const float *numbers,
-                               float *direction, float *distance, float *radiance, float *pdf, int32_t *dirac, int32_t *source) {
+                               float *direction, float *distance, float *radiance, float *pdf, int32_t *dirac,
+                               int32_t *source) {
   if (!scene || !scene->lights || !r) return OPAL_ERROR_ARGUMENT;
   const AllWavelengths all(scene->colour);
   for (int64_t i = 0; i < n; ++i) {
@@ -48,7 +51,8 @@ int32_t opal_test_sample_light(const opal_scene *scene, const opal_test_receiver
     bool sampled = true;
     const Vec3 rgb = integrate(all, [&](const Wavelengths &w) {
       s = {};
-      sampled &= sample_light(*scene, load(r->position), load(r->normal), r->transmissive, r->light_group, u[0], {u[1], u[2]}, w, 0, s);
+      sampled &= sample_light(*scene, load(r->position), load(r->normal), r->transmissive, r->light_group, u[0], {u[1], u[2]},
+                              w, 0, s);
       return s.radiance;
     });
     store(s.wi, direction + 3 * i);
@@ -72,8 +76,8 @@ int32_t opal_test_light_pdf(const opal_scene *scene, const opal_test_receiver *r
   return OPAL_OK;
 }
 
-int32_t opal_test_lights_along(const opal_scene *scene, int64_t n, const float *origin, const float *direction, uint32_t ray_kind,
-                               float *distance, float *radiance, int32_t *source) {
+int32_t opal_test_lights_along(const opal_scene *scene, int64_t n, const float *origin, const float *direction,
+                               uint32_t ray_kind, float *distance, float *radiance, int32_t *source) {
   if (!scene || !scene->lights) return OPAL_ERROR_ARGUMENT;
   const AllWavelengths all(scene->colour);
   for (int64_t i = 0; i < n; ++i) {
@@ -125,12 +129,13 @@ int32_t opal_test_sample_emission(const opal_scene *scene, int32_t n_targets, co
   return OPAL_OK;
 }
 
-int32_t opal_test_camera_rays(const opal_camera_desc *camera, int64_t n, const float *film, const float *lens, const float *time,
-                              float *origin, float *direction, float *range) {
+int32_t opal_test_camera_rays(const opal_camera_desc *camera, int64_t n, const float *film, const float *lens,
+                              const float *time, float *origin, float *direction, float *range) {
   if (!camera) return OPAL_ERROR_ARGUMENT;
   for (int64_t i = 0; i < n; ++i) {
     Ray ray;
-    if (!generate_ray(*camera, film[2 * i], film[2 * i + 1], {lens[2 * i], lens[2 * i + 1]}, time[i], ray)) return OPAL_ERROR_ARGUMENT;
+    if (!generate_ray(*camera, film[2 * i], film[2 * i + 1], {lens[2 * i], lens[2 * i + 1]}, time[i], ray))
+      return OPAL_ERROR_ARGUMENT;
     store(ray.origin, origin + 3 * i);
     store(ray.direction, direction + 3 * i);
     range[2 * i] = ray.t_min, range[2 * i + 1] = ray.t_max;

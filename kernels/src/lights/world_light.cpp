@@ -64,8 +64,8 @@ void WorldLight::build(const Scene &scene) {
   const std::atomic<bool> never{false};
   parallel_for(height, resolve_threads(scene.threads), never, [&](int64_t y) {
     for (int x = 0; x < width; ++x)
-      values[size_t(y) * size_t(width) + size_t(x)] =
-          importance(world_radiance(scene, direction_of((float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height)), 0));
+      values[size_t(y) * size_t(width) + size_t(x)] = importance(
+          world_radiance(scene, direction_of((float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height)), 0));
   });
   double total = 0, solid = 0;
   for (int y = 0; y < height; ++y) {
