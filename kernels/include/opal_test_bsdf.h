@@ -15,23 +15,23 @@ extern "C" {
 #define OPAL_TEST_WAVELENGTHS 8
 
 typedef enum opal_test_node {
-  OPAL_TEST_DIFFUSE = 0,      /* color, roughness */
-  OPAL_TEST_TRANSLUCENT = 1,  /* color */
-  OPAL_TEST_GLOSSY = 2,       /* color, roughness, anisotropy, rotation */
-  OPAL_TEST_GLASS = 3,        /* color, roughness, ior */
-  OPAL_TEST_REFRACTION = 4,   /* color, roughness, ior */
-  OPAL_TEST_TRANSPARENT = 5,  /* color */
-  OPAL_TEST_SHEEN = 6,        /* color, roughness */
-  OPAL_TEST_METAL_F82 = 7,    /* color, color_2: the tint at the edge, roughness, anisotropy, rotation */
-  OPAL_TEST_CONDUCTOR = 8,    /* color: n, color_2: k, roughness, anisotropy, rotation */
-  OPAL_TEST_PRINCIPLED = 9,   /* color, roughness, ior, anisotropy, rotation, principled */
-  OPAL_TEST_GEM = 10          /* roughness, eta, schlick */
+  OPAL_TEST_DIFFUSE = 0,     /* color, roughness */
+  OPAL_TEST_TRANSLUCENT = 1, /* color */
+  OPAL_TEST_GLOSSY = 2,      /* color, roughness, anisotropy, rotation */
+  OPAL_TEST_GLASS = 3,       /* color, roughness, ior */
+  OPAL_TEST_REFRACTION = 4,  /* color, roughness, ior */
+  OPAL_TEST_TRANSPARENT = 5, /* color */
+  OPAL_TEST_SHEEN = 6,       /* color, roughness */
+  OPAL_TEST_METAL_F82 = 7,   /* color, color_2: the tint at the edge, roughness, anisotropy, rotation */
+  OPAL_TEST_CONDUCTOR = 8,   /* color: n, color_2: k, roughness, anisotropy, rotation */
+  OPAL_TEST_PRINCIPLED = 9,  /* color, roughness, ior, anisotropy, rotation, principled */
+  OPAL_TEST_GEM = 10         /* roughness, eta, schlick */
 } opal_test_node;
 
 typedef struct opal_test_bsdf {
-  int32_t node;               /* opal_test_node */
+  int32_t node; /* opal_test_node */
   int32_t multiscatter, backfacing, schlick;
-  int32_t flux;               /* 0: radiance, carried from cameras; 1: flux, carried from lights */
+  int32_t flux; /* 0: radiance, carried from cameras; 1: flux, carried from lights */
   float wo[3], geometric_normal[3], shading_normal[3];
   float normal[3], tangent[3]; /* sockets; zero: not linked */
   float color[3], color_2[3];
@@ -43,10 +43,11 @@ typedef struct opal_test_bsdf {
 } opal_test_bsdf;
 
 /* f |cos| and pdf for n directions (3 floats each); value and pdf: 8 floats each. rough_only: the part photons are left for. */
-OPAL_EXPORT void opal_test_bsdf_eval(const opal_test_bsdf *bsdf, int32_t n, const float *wi, int32_t rough_only, float *value, float *pdf);
+OPAL_EXPORT void opal_test_bsdf_eval(const opal_test_bsdf *bsdf, int32_t n, const float *wi, int32_t rough_only, float *value,
+                                     float *pdf);
 /* n samples from 3 numbers each: direction (3), weight (8), pdf (8), scattering flags (0: no sample), eta. */
-OPAL_EXPORT void opal_test_bsdf_sample(const opal_test_bsdf *bsdf, int32_t n, const float *u, float *wi, float *weight, float *pdf,
-                                       uint32_t *scattering, float *eta);
+OPAL_EXPORT void opal_test_bsdf_sample(const opal_test_bsdf *bsdf, int32_t n, const float *u, float *wi, float *weight,
+                                       float *pdf, uint32_t *scattering, float *eta);
 /* What the node adds up to: emission (3), transparency (3), albedo guide (3), sum of sample weights; returns the lobe count. */
 OPAL_EXPORT int32_t opal_test_bsdf_summary(const opal_test_bsdf *bsdf, float *summary);
 

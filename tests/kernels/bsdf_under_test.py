@@ -77,7 +77,11 @@ class Bsdf:
         wi = np.ascontiguousarray(np.atleast_2d(wi), np.float32)
         value, pdf = (np.empty((len(wi), N_WAVELENGTHS), np.float32) for _ in range(2))
         self._library.opal_test_bsdf_eval(
-            byref(self.description), len(wi), wi.ctypes.data_as(_float_p), int(rough_only), *(a.ctypes.data_as(_float_p) for a in (value, pdf))
+            byref(self.description),
+            len(wi),
+            wi.ctypes.data_as(_float_p),
+            int(rough_only),
+            *(a.ctypes.data_as(_float_p) for a in (value, pdf)),
         )
         return value.astype(float), pdf.astype(float)
 

@@ -56,10 +56,18 @@ def _cases():
         yield f"principled metal {r}", "PRINCIPLED", many | {"metallic": 0.7, "specular_tint": (0.3, 0.9, 0.5)}
         yield f"principled glass {r}", "PRINCIPLED", many | {"transmission": 0.8}
         yield f"principled glass from inside {r}", "PRINCIPLED", many | {"transmission": 1, "backfacing": 1}
-        yield f"principled coat {r}", "PRINCIPLED", many | {"roughness": 0.5, "coat_roughness": r, "coat": 0.8, "coat_tint": ROSE, "coat_ior": 1.7}
+        yield (
+            f"principled coat {r}",
+            "PRINCIPLED",
+            many | {"roughness": 0.5, "coat_roughness": r, "coat": 0.8, "coat_tint": ROSE, "coat_ior": 1.7},
+        )
     for r in (0.1, 0.3, 0.6, 1):
         yield f"sheen {r}", "SHEEN", {"roughness": r}
-        yield f"principled sheen {r}", "PRINCIPLED", {"roughness": 0.5, "multiscatter": 1, "sheen": 0.9, "sheen_roughness": r, "sheen_tint": ROSE}
+        yield (
+            f"principled sheen {r}",
+            "PRINCIPLED",
+            {"roughness": 0.5, "multiscatter": 1, "sheen": 0.9, "sheen_roughness": r, "sheen_tint": ROSE},
+        )
     for a in (-0.6, 0.7):
         yield f"glossy stretched {a}", "GLOSSY", {"roughness": 0.6, "multiscatter": 1, "anisotropy": a, "rotation": 0.1, "tangent": TANGENT}
     yield "F82 stretched", "METAL_F82", {"roughness": 0.6, "color_2": ROSE, "anisotropy": 0.7, "rotation": 0.1, "tangent": TANGENT}
@@ -113,8 +121,8 @@ def _material(name):
     return material
 
 
-@pytest.fixture(scope="module")
-def strips(tmp_path_factory):
+@pytest.fixture
+def strips(tmp_path):
     """A function from (view angle, world radiance, sun direction or None, samples) to {case: RGB}."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
@@ -146,7 +154,7 @@ def strips(tmp_path_factory):
     cycles.sample_clamp_indirect = 0
     cycles.pixel_filter_type = "BOX"
     cycles.filter_width = 0.01
-    path = str(tmp_path_factory.mktemp("cycles") / "strips.exr")
+    path = str(tmp_path / "strips.exr")
     middle = len(CASES) / 2
 
     def shoot(view, radiance, sun_direction, samples):

@@ -41,7 +41,8 @@ bool is_rough(const Lobe &lobe) { return is_diffuse(lobe) || lobe.alpha_x * lobe
 
 // What the reversed path adds to a lobe's f |cos wi|.
 float adjoint(const Lobe &lobe, const ShadingPoint &sp, const Vec3 &wi, bool transmission) {
-  const float scale = transmission && (lobe.kind == LobeKind::Glass || lobe.kind == LobeKind::Refraction) ? 1 / sqr(lobe.eta) : 1.0f;
+  const float scale =
+      transmission && (lobe.kind == LobeKind::Glass || lobe.kind == LobeKind::Refraction) ? 1 / sqr(lobe.eta) : 1.0f;
   return scale * flux_correction(lobe.normal, sp.ng, sp.wo, wi);
 }
 
@@ -136,7 +137,8 @@ bool sample_lobe(const Lobe &lobe, const ShadingPoint &sp, float choice, Vec2 u,
       out.dirac = facet.dirac;
       out.eta = facet.transmission ? lobe.eta : 1.0f;
       out.roughness = facet.dirac ? 0.0f : lobe_roughness(lobe);
-      out.scattering = (facet.transmission ? kScatterTransmit : kScatterReflect) | (facet.dirac ? kScatterSpecular : kScatterGlossy);
+      out.scattering =
+          (facet.transmission ? kScatterTransmit : kScatterReflect) | (facet.dirac ? kScatterSpecular : kScatterGlossy);
       if ((dot(sp.ng, out.wi) < 0) != facet.transmission) return false;
       return true;
     }
@@ -145,7 +147,8 @@ bool sample_lobe(const Lobe &lobe, const ShadingPoint &sp, float choice, Vec2 u,
   return false;
 }
 
-Spectrum eval_rgb(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w, Transport transport, float &pdf) {
+Spectrum eval_rgb(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w, Transport transport,
+                  float &pdf) {
   Vec3 f;
   float weighted = 0, total = 0;
   for (int i = 0; i < set.count; ++i) {
@@ -163,7 +166,8 @@ Spectrum eval_rgb(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi,
 // Lambert's lobe alone, the commonest surface: the cosine cancels and nothing needs to be evaluated again.
 bool is_lambert(const ClosureSet &set) { return set.count == 1 && set.lobes[0].kind == LobeKind::Diffuse; }
 
-bool sample_lambert(const Lobe &lobe, const ShadingPoint &sp, const Wavelengths &w, Transport transport, Vec2 u, BsdfSample &out) {
+bool sample_lambert(const Lobe &lobe, const ShadingPoint &sp, const Wavelengths &w, Transport transport, Vec2 u,
+                    BsdfSample &out) {
   const Vec3 local = sample_cosine(u);
   out.wi = Frame::from_z(lobe.normal).to_world(local);
   if (!(local.z > 0 && dot(sp.ng, out.wi) > 0)) return false;
@@ -221,7 +225,8 @@ bool bsdf_sample(const ClosureSet &set, const ShadingPoint &sp, const Wavelength
   return out.weight.is_finite() && !out.weight.is_zero();
 }
 
-Spectrum bsdf_eval(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w, Transport transport, Spectrum &pdf) {
+Spectrum bsdf_eval(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w, Transport transport,
+                   Spectrum &pdf) {
   if (is_gem(set)) return eval_gem(set, sp, wi, transport, pdf);
   float p;
   const Spectrum value = eval_rgb(set, sp, wi, w, transport, p);
@@ -235,7 +240,8 @@ bool bsdf_has_smooth_lobe(const ClosureSet &set) {
   return false;
 }
 
-Spectrum bsdf_eval_rough(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w, Transport transport) {
+Spectrum bsdf_eval_rough(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w,
+                         Transport transport) {
   if (is_gem(set)) {
     Spectrum unused;
     return set.gem.alpha > kSharpAlpha ? eval_gem(set, sp, wi, transport, unused) : Spectrum(0.0f);

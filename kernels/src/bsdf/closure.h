@@ -14,39 +14,39 @@
 namespace opal {
 
 enum class LobeKind : uint8_t {
-  Diffuse,        // Lambert
-  OrenNayar,      // params: A, B; f0: the part that is scattered several times
-  Translucent,    // Lambert through the surface
-  Microfacet,     // GGX reflection
-  Glass,          // GGX reflection and transmission, sampled together
-  Refraction,     // GGX transmission alone
-  Sheen,          // params: a, b of the linearly transformed cosine
-  Transparent,    // straight through
-  Gem             // spectral dielectric boundary
+  Diffuse,      // Lambert
+  OrenNayar,    // params: A, B; f0: the part that is scattered several times
+  Translucent,  // Lambert through the surface
+  Microfacet,   // GGX reflection
+  Glass,        // GGX reflection and transmission, sampled together
+  Refraction,   // GGX transmission alone
+  Sheen,        // params: a, b of the linearly transformed cosine
+  Transparent,  // straight through
+  Gem           // spectral dielectric boundary
 };
 
 // Kinds of Fresnel term for Microfacet and Glass lobes.
 enum class FresnelKind : uint8_t {
-  None,           // the weight alone
-  Dielectric,     // exact, from eta
-  Generalized,    // f0, f90 in RGB, Schlick-shaped by the exact dielectric curve of eta or an exponent
-  F82,            // metal: Schlick from f0, less f90 cos (1 - cos)^6 (the dip near 82 degrees)
-  Conductor       // metal: complex index n = f0, k = f90, in RGB
+  None,         // the weight alone
+  Dielectric,   // exact, from eta
+  Generalized,  // f0, f90 in RGB, Schlick-shaped by the exact dielectric curve of eta or an exponent
+  F82,          // metal: Schlick from f0, less f90 cos (1 - cos)^6 (the dip near 82 degrees)
+  Conductor     // metal: complex index n = f0, k = f90, in RGB
 };
 
 struct Lobe {
   LobeKind kind = LobeKind::Diffuse;
   FresnelKind fresnel = FresnelKind::None;
-  Vec3 weight;                 // RGB factor, includes mixing and energy compensation
-  float sample_weight = 0;     // relative probability of choosing this lobe, >= 0
-  Vec3 normal;                 // towards the viewer's side
+  Vec3 weight;              // RGB factor, includes mixing and energy compensation
+  float sample_weight = 0;  // relative probability of choosing this lobe, >= 0
+  Vec3 normal;              // towards the viewer's side
   Vec3 tangent;
   float alpha_x = 0, alpha_y = 0;  // GGX; below kSpecularAlpha the lobe is a mirror
-  float eta = 1;               // index behind / index in front, as seen from the viewer's side
+  float eta = 1;                   // index behind / index in front, as seen from the viewer's side
   Vec3 f0, f90{1, 1, 1};
   Vec3 reflection_tint{1, 1, 1}, transmission_tint{1, 1, 1};
-  float exponent = -1;         // Generalized: below 0 uses the dielectric curve
-  float energy_scale = 1;      // multiple scattering between facets
+  float exponent = -1;     // Generalized: below 0 uses the dielectric curve
+  float energy_scale = 1;  // multiple scattering between facets
   float params[4] = {};
 };
 
@@ -58,20 +58,20 @@ inline constexpr int kMaxLobes = 16;
 
 // The gem boundary (see bsdf/gem.h).
 struct GemBoundary {
-  Spectrum eta;                // n(behind) / n(in front) at the path's wavelengths
+  Spectrum eta;  // n(behind) / n(in front) at the path's wavelengths
   Spectrum n_front, n_behind;
   float alpha = 0;
   bool schlick = false;
-  bool dispersive = false;     // eta differs between wavelengths
+  bool dispersive = false;  // eta differs between wavelengths
 };
 
 struct ClosureSet {
   Lobe lobes[kMaxLobes];
   int count = 0;
-  Vec3 emission;               // RGB radiance
+  Vec3 emission;  // RGB radiance
   Vec3 holdout_or_unused;
   float holdout = 0;
-  Vec3 albedo;                 // guide for the denoiser
+  Vec3 albedo;  // guide for the denoiser
   GemBoundary gem;
 
   // Adds a lobe unless its weight is (near) zero or the set is full; returns it or nullptr.
@@ -85,9 +85,9 @@ enum Scattering : uint32_t {
   kScatterTransmit = 2,
   kScatterDiffuse = 4,
   kScatterGlossy = 8,
-  kScatterSpecular = 16,       // a Dirac lobe: pdf and value are those of the one direction
-  kScatterTransparent = 32,    // straight through; does not count as a bounce
-  kScatterDispersive = 64      // direction depends on wavelength: pdf differs between wavelengths
+  kScatterSpecular = 16,     // a Dirac lobe: pdf and value are those of the one direction
+  kScatterTransparent = 32,  // straight through; does not count as a bounce
+  kScatterDispersive = 64    // direction depends on wavelength: pdf differs between wavelengths
 };
 
 // Radiance is carried from cameras, flux (importance's adjoint) from lights: refraction scales the first by
@@ -96,23 +96,24 @@ enum class Transport : uint8_t { Radiance, Flux };
 
 struct BsdfSample {
   Vec3 wi;
-  Spectrum weight;             // f |cos| / pdf of the hero, per wavelength
-  Spectrum pdf;                // of choosing wi, per wavelength (Dirac: of choosing the lobe; 0 where a wavelength could not go this way)
+  Spectrum weight;  // f |cos| / pdf of the hero, per wavelength
+  Spectrum pdf;     // of choosing wi, per wavelength (Dirac: of choosing the lobe; 0 where a wavelength could not go this way)
   uint32_t scattering = 0;
-  float eta = 1;               // n(new side) / n(old side) for transmission, hero wavelength
-  float roughness = 1;         // of the chosen lobe: 0 mirror .. 1 diffuse
+  float eta = 1;        // n(new side) / n(old side) for transmission, hero wavelength
+  float roughness = 1;  // of the chosen lobe: 0 mirror .. 1 diffuse
 };
 
 // Chooses a direction. `lobe_u` picks the lobe, `u` the direction. False when nothing can be sampled.
-bool bsdf_sample(const ClosureSet &set, const ShadingPoint &sp, const Wavelengths &w, Transport transport, float lobe_u,
-                 Vec2 u, BsdfSample &out);
+bool bsdf_sample(const ClosureSet &set, const ShadingPoint &sp, const Wavelengths &w, Transport transport, float lobe_u, Vec2 u,
+                 BsdfSample &out);
 // f |cos| summed over the non-Dirac lobes; pdf (solid angle) of bsdf_sample choosing wi, per wavelength.
-Spectrum bsdf_eval(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w,
-                   Transport transport, Spectrum &pdf);
+Spectrum bsdf_eval(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w, Transport transport,
+                   Spectrum &pdf);
 // Whether any lobe is not Dirac, i.e. next-event estimation and photon gathering make sense here.
 bool bsdf_has_smooth_lobe(const ClosureSet &set);
 // The part of bsdf_eval (f |cos|) that lobes of GGX alpha above kSharpAlpha and diffuse ones bring: where photons are left.
-Spectrum bsdf_eval_rough(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w, Transport transport);
+Spectrum bsdf_eval_rough(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w,
+                         Transport transport);
 // Straight-through transmittance (Transparent lobes) and its complement.
 Vec3 bsdf_transparency(const ClosureSet &set);
 

@@ -77,8 +77,7 @@ LobeAlbedo lobe_albedo(const Lobe &lobe, const Vec3 &wo) {
         break;
       default: known = false;
     }
-    if (known)
-      return {reflectance * lobe.reflection_tint, glass ? (white - reflectance) * lobe.transmission_tint : Vec3{}};
+    if (known) return {reflectance * lobe.reflection_tint, glass ? (white - reflectance) * lobe.transmission_tint : Vec3{}};
   }
   if (lobe.kind == LobeKind::Microfacet || glass || lobe.kind == LobeKind::Refraction) {
     // As if smooth.
@@ -91,7 +90,8 @@ LobeAlbedo lobe_albedo(const Lobe &lobe, const Vec3 &wo) {
 
 void preserve_energy(Lobe &lobe, const Vec3 &wo, const Vec3 &average_fresnel) {
   const float cosine = dot(lobe.normal, wo), roughness = lobe_roughness(lobe);
-  const Albedo e = lobe.kind == LobeKind::Glass ? ggx_glass_albedo(roughness, cosine, lobe.eta) : ggx_mirror_albedo(roughness, cosine);
+  const Albedo e =
+      lobe.kind == LobeKind::Glass ? ggx_glass_albedo(roughness, cosine, lobe.eta) : ggx_mirror_albedo(roughness, cosine);
   if (!(e.directional > 1e-3f)) return;
   const float missing = (1 - e.directional) / e.directional;
   lobe.energy_scale = 1 + missing;

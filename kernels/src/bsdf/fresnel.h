@@ -47,8 +47,7 @@ inline float fresnel_schlick(float cos_i, float eta, float &cos_t) {
 
 // Average over 2 cos d(cos) of fresnel_dielectric: Kulla & Conty's fit.
 constexpr float average_fresnel_dielectric(float eta) {
-  return eta < 1 ? 0.997118f + eta * (0.1014f - eta * (0.965241f + eta * 0.130607f))
-                 : (eta - 1) / (4.08567f + 1.00071f * eta);
+  return eta < 1 ? 0.997118f + eta * (0.1014f - eta * (0.965241f + eta * 0.130607f)) : (eta - 1) / (4.08567f + 1.00071f * eta);
 }
 
 // Metals after F82: Schlick's curve less dip * cos (1 - cos)^6, which bends it near 82 degrees (cos = 1/7).
@@ -68,7 +67,9 @@ inline Vec3 f82_dip_from_value(const Vec3 &f0, const Vec3 &f82) {
   return (lerp(f0, Vec3{1, 1, 1}, pow5(s)) - f82) * (7 / (pow5(s) * s));
 }
 // Average over 2 cos d(cos): 2 times the integral of cos (1-cos)^5 is 1/21, of cos^2 (1-cos)^6 is 1/126.
-inline Vec3 average_fresnel_f82(const Vec3 &f0, const Vec3 &dip) { return lerp(f0, Vec3{1, 1, 1}, 1.0f / 21.0f) - dip * (1.0f / 126.0f); }
+inline Vec3 average_fresnel_f82(const Vec3 &f0, const Vec3 &dip) {
+  return lerp(f0, Vec3{1, 1, 1}, 1.0f / 21.0f) - dip * (1.0f / 126.0f);
+}
 
 // Exact reflectance of a metal of complex index n + ik against vacuum (Born & Wolf 14.4.1).
 inline float fresnel_conductor(float cos_i, float n, float k) {

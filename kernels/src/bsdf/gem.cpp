@@ -26,7 +26,8 @@ bool on_side(const ShadingPoint &sp, const Vec3 &wi, bool transmission) {
 }
 
 // The polished boundary with normal n. False where the direction ends on the wrong side of the surface.
-bool sample_polished(const GemBoundary &gem, const ShadingPoint &sp, const Vec3 &n, Transport transport, float choice, BsdfSample &out) {
+bool sample_polished(const GemBoundary &gem, const ShadingPoint &sp, const Vec3 &n, Transport transport, float choice,
+                     BsdfSample &out) {
   const float cos_o = dot(n, sp.wo);
   if (!(cos_o > 0)) return false;
   float cos_t;

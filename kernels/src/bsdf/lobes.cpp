@@ -33,7 +33,8 @@ void weigh_lobe(Lobe &lobe, const Vec3 &wo) {
   lobe.sample_weight *= average(albedo.reflected + albedo.transmitted);
 }
 
-void add_diffuse_lobe(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const Vec3 &color, float roughness, const Vec3 &normal) {
+void add_diffuse_lobe(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const Vec3 &color, float roughness,
+                      const Vec3 &normal) {
   const bool rough = roughness >= 1e-5f;
   Lobe *lobe = set.add(rough ? LobeKind::OrenNayar : LobeKind::Diffuse, weight, normal);
   if (!lobe) return;
@@ -53,7 +54,8 @@ Lobe *add_sheen_lobe(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight
 
 // ---- One node each ----
 
-void add_diffuse(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const Vec3 &color, float roughness, const Vec3 &normal) {
+void add_diffuse(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const Vec3 &color, float roughness,
+                 const Vec3 &normal) {
   add_diffuse_lobe(set, sp, weight * color, color, roughness, shading_normal(normal, sp));
 }
 
@@ -62,8 +64,8 @@ void add_translucent(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight
   if (lobe) finish_lobe(set, *lobe, sp.wo);
 }
 
-void add_glossy(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const Vec3 &color, float roughness, float anisotropy,
-                float rotation, const Vec3 &normal, const Vec3 &tangent, bool multiscatter) {
+void add_glossy(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const Vec3 &color, float roughness,
+                float anisotropy, float rotation, const Vec3 &normal, const Vec3 &tangent, bool multiscatter) {
   const Vec3 c = max(color, Vec3{});
   Lobe *lobe = set.add(LobeKind::Microfacet, weight * c, mirror_normal(shading_normal(normal, sp), sp));
   if (!lobe) return;
@@ -82,8 +84,8 @@ void add_glossy(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, con
 namespace {
 
 // The Metallic BSDF up to its Fresnel term.
-Lobe *add_metallic(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, float roughness, float anisotropy, float rotation,
-                   const Vec3 &normal, const Vec3 &tangent) {
+Lobe *add_metallic(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, float roughness, float anisotropy,
+                   float rotation, const Vec3 &normal, const Vec3 &tangent) {
   const Vec3 n = shading_normal(normal, sp);
   Lobe *lobe = set.add(LobeKind::Microfacet, weight, mirror_normal(n, sp));
   if (lobe) set_anisotropy(*lobe, saturate(roughness), saturate(anisotropy), rotation, n, tangent);
@@ -109,16 +111,18 @@ void set_f82(Lobe &lobe, const Vec3 &f0, const Vec3 &tint, const Vec3 &wo, bool 
   if (multiscatter) preserve_energy(lobe, wo, average_fresnel_f82(lobe.f0, lobe.f90));
 }
 
-void add_metallic_f82(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const Vec3 &base_color, const Vec3 &edge_tint,
-                      float roughness, float anisotropy, float rotation, const Vec3 &normal, const Vec3 &tangent, bool multiscatter) {
+void add_metallic_f82(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const Vec3 &base_color,
+                      const Vec3 &edge_tint, float roughness, float anisotropy, float rotation, const Vec3 &normal,
+                      const Vec3 &tangent, bool multiscatter) {
   Lobe *lobe = add_metallic(set, sp, weight, roughness, anisotropy, rotation, normal, tangent);
   if (!lobe) return;
   set_f82(*lobe, saturate(base_color), saturate(edge_tint), sp.wo, multiscatter);
   finish_lobe(set, *lobe, sp.wo);
 }
 
-void add_metallic_conductor(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const Vec3 &n, const Vec3 &k, float roughness,
-                            float anisotropy, float rotation, const Vec3 &normal, const Vec3 &tangent, bool multiscatter) {
+void add_metallic_conductor(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const Vec3 &n, const Vec3 &k,
+                            float roughness, float anisotropy, float rotation, const Vec3 &normal, const Vec3 &tangent,
+                            bool multiscatter) {
   Lobe *lobe = add_metallic(set, sp, weight, roughness, anisotropy, rotation, normal, tangent);
   if (!lobe) return;
   lobe->fresnel = FresnelKind::Conductor;
@@ -133,8 +137,8 @@ void add_metallic_conductor(ClosureSet &set, const ShadingPoint &sp, const Vec3 
   finish_lobe(set, *lobe, sp.wo);
 }
 
-void set_glass(Lobe &lobe, float ior, bool backfacing, const Vec3 &f0_tint, const Vec3 &reflection_tint, const Vec3 &transmission_tint,
-               const Vec3 &wo, bool multiscatter) {
+void set_glass(Lobe &lobe, float ior, bool backfacing, const Vec3 &f0_tint, const Vec3 &reflection_tint,
+               const Vec3 &transmission_tint, const Vec3 &wo, bool multiscatter) {
   lobe.eta = backfacing ? 1 / ior : ior;
   lobe.fresnel = FresnelKind::Generalized;
   lobe.f0 = saturate(f0_tint * f0_from_index(ior));
@@ -144,8 +148,8 @@ void set_glass(Lobe &lobe, float ior, bool backfacing, const Vec3 &f0_tint, cons
   if (multiscatter) preserve_energy(lobe, wo, transmission_tint);
 }
 
-void add_glass(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const Vec3 &color, float roughness, float ior, const Vec3 &normal,
-               bool multiscatter) {
+void add_glass(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const Vec3 &color, float roughness, float ior,
+               const Vec3 &normal, bool multiscatter) {
   const Vec3 c = max(color, Vec3{});
   if (max_component(c) <= 0) return;
   Lobe *lobe = set.add(LobeKind::Glass, weight, mirror_normal(shading_normal(normal, sp), sp));
@@ -176,7 +180,8 @@ void add_transparent(ClosureSet &set, const Vec3 &weight, const Vec3 &color) {
   set.add(LobeKind::Transparent, w, {0, 0, 1});
 }
 
-void add_sheen(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const Vec3 &color, float roughness, const Vec3 &normal) {
+void add_sheen(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const Vec3 &color, float roughness,
+               const Vec3 &normal) {
   add_sheen_lobe(set, sp, weight * color, saturate(roughness), shading_normal(normal, sp));
 }
 

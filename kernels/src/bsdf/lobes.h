@@ -35,8 +35,8 @@ void add_metallic_conductor(ClosureSet &set, const ShadingPoint &sp, const Vec3 
                             bool multiscatter);
 void add_glass(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const Vec3 &color, float roughness, float ior,
                const Vec3 &normal, bool multiscatter);
-void add_refraction(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const Vec3 &color, float roughness,
-                    float ior, const Vec3 &normal);
+void add_refraction(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const Vec3 &color, float roughness, float ior,
+                    const Vec3 &normal);
 void add_transparent(ClosureSet &set, const Vec3 &weight, const Vec3 &color);
 // Sheen BSDF, microfiber (the Ashikhmin distribution is shaded alike).
 void add_sheen(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const Vec3 &color, float roughness,
@@ -52,7 +52,7 @@ struct PrincipledInputs {
   float roughness = 0.5f;
   float ior = 1.5f;
   float alpha = 1;
-  Vec3 normal;                      // zero: sp.ns
+  Vec3 normal;  // zero: sp.ns
   float diffuse_roughness = 0;
   float subsurface_weight = 0;
   Vec3 subsurface_radius{1, 0.2f, 0.1f};
@@ -62,21 +62,21 @@ struct PrincipledInputs {
   Vec3 specular_tint{1, 1, 1};
   float anisotropic = 0;
   float anisotropic_rotation = 0;
-  Vec3 tangent;                     // zero: any
+  Vec3 tangent;  // zero: any
   float transmission_weight = 0;
   float coat_weight = 0;
   float coat_roughness = 0.03f;
   float coat_ior = 1.5f;
   Vec3 coat_tint{1, 1, 1};
-  Vec3 coat_normal;                 // zero: sp.ns, whatever `normal` is
+  Vec3 coat_normal;  // zero: sp.ns, whatever `normal` is
   float sheen_weight = 0;
   float sheen_roughness = 0.5f;
   Vec3 sheen_tint{1, 1, 1};
   Vec3 emission_color{1, 1, 1};
   float emission_strength = 0;
-  float thin_film_thickness = 0;    // nm
+  float thin_film_thickness = 0;  // nm
   float thin_film_ior = 1.33f;
-  bool multiscatter = true;         // distribution "Multiscatter GGX"
+  bool multiscatter = true;  // distribution "Multiscatter GGX"
 };
 void add_principled(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const PrincipledInputs &in);
 

@@ -74,20 +74,24 @@ inline bool transmits_straight(const Lobe &lobe) { return std::abs(lobe.eta - 1)
 inline Frame facet_frame(const Lobe &lobe) {
   return lobe.alpha_x == lobe.alpha_y ? Frame::from_z(lobe.normal) : Frame::from_zx(lobe.normal, lobe.tangent);
 }
-inline Ggx facet_distribution(const Lobe &lobe) { return {std::max(lobe.alpha_x, kSpecularAlpha), std::max(lobe.alpha_y, kSpecularAlpha)}; }
+inline Ggx facet_distribution(const Lobe &lobe) {
+  return {std::max(lobe.alpha_x, kSpecularAlpha), std::max(lobe.alpha_y, kSpecularAlpha)};
+}
 
 // Not for mirrors. The weight is not included, the energy scale is.
 inline LobeValue eval_microfacet(const Lobe &lobe, const Vec3 &wo, const Vec3 &wi) {
   const Frame frame = facet_frame(lobe);
   const Vec3 o = frame.to_local(wo), i = frame.to_local(wi);
   const bool transmission = i.z < 0;
-  if (transmission ? lobe.kind == LobeKind::Microfacet || transmits_straight(lobe) : lobe.kind == LobeKind::Refraction) return {};
+  if (transmission ? lobe.kind == LobeKind::Microfacet || transmits_straight(lobe) : lobe.kind == LobeKind::Refraction)
+    return {};
   const Ggx ggx = facet_distribution(lobe);
   const FacetTerms terms = transmission ? facet_refraction(ggx, o, i, lobe.eta) : facet_reflection(ggx, o, i);
   if (!(terms.pdf > 0)) return {};
   const FacetFresnel f = facet_fresnel(lobe, terms.cos_o);
   const float p = f.reflection_probability();
-  return {(transmission ? f.transmittance : f.reflectance) * (terms.value * lobe.energy_scale), terms.pdf * (transmission ? 1 - p : p)};
+  return {(transmission ? f.transmittance : f.reflectance) * (terms.value * lobe.energy_scale),
+          terms.pdf * (transmission ? 1 - p : p)};
 }
 
 // What sampling a microfacet lobe chose.

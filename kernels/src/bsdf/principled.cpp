@@ -63,7 +63,8 @@ struct Layers {
     if (amount <= kCutoff) return;
     if (Lobe *lobe = set.add(LobeKind::Microfacet, weight * amount, mirror)) {
       set_facets(*lobe);
-      set_f82(*lobe, min(max(in.base_color, Vec3{}), kWhite), min(max(in.specular_tint, Vec3{}), kWhite), sp.wo, in.multiscatter);
+      set_f82(*lobe, min(max(in.base_color, Vec3{}), kWhite), min(max(in.specular_tint, Vec3{}), kWhite), sp.wo,
+              in.multiscatter);
       finish_lobe(set, *lobe, sp.wo);
     }
     weight *= 1 - amount;
@@ -75,8 +76,8 @@ struct Layers {
     if (Lobe *lobe = set.add(LobeKind::Glass, weight * amount, mirror)) {
       lobe->alpha_x = lobe->alpha_y = sqr(saturate(in.roughness));
       const Vec3 c = saturate(in.base_color);
-      set_glass(*lobe, ior(), sp.backfacing, max(in.specular_tint, Vec3{}), kWhite, {std::sqrt(c.x), std::sqrt(c.y), std::sqrt(c.z)}, sp.wo,
-                in.multiscatter);
+      set_glass(*lobe, ior(), sp.backfacing, max(in.specular_tint, Vec3{}), kWhite,
+                {std::sqrt(c.x), std::sqrt(c.y), std::sqrt(c.z)}, sp.wo, in.multiscatter);
       finish_lobe(set, *lobe, sp.wo);
     }
     weight *= 1 - amount;

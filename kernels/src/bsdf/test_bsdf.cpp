@@ -31,7 +31,8 @@ struct Case {
   }
 
   void add(const opal_test_bsdf &d) {
-    const Vec3 white{1, 1, 1}, color = vec3(d.color), color_2 = vec3(d.color_2), normal = vec3(d.normal), tangent = vec3(d.tangent);
+    const Vec3 white{1, 1, 1}, color = vec3(d.color), color_2 = vec3(d.color_2), normal = vec3(d.normal),
+                               tangent = vec3(d.tangent);
     const bool multi = d.multiscatter != 0;
     switch (d.node) {
       case OPAL_TEST_DIFFUSE: return add_diffuse(set, sp, white, color, d.roughness, normal);
@@ -45,7 +46,8 @@ struct Case {
       case OPAL_TEST_METAL_F82:
         return add_metallic_f82(set, sp, white, color, color_2, d.roughness, d.anisotropy, d.rotation, normal, tangent, multi);
       case OPAL_TEST_CONDUCTOR:
-        return add_metallic_conductor(set, sp, white, color, color_2, d.roughness, d.anisotropy, d.rotation, normal, tangent, multi);
+        return add_metallic_conductor(set, sp, white, color, color_2, d.roughness, d.anisotropy, d.rotation, normal, tangent,
+                                      multi);
       case OPAL_TEST_PRINCIPLED: return principled(d);
       case OPAL_TEST_GEM: return gem(d);
     }
@@ -94,8 +96,8 @@ void opal_test_bsdf_eval(const opal_test_bsdf *bsdf, int32_t n, const float *wi,
   }
 }
 
-void opal_test_bsdf_sample(const opal_test_bsdf *bsdf, int32_t n, const float *u, float *wi, float *weight, float *pdf, uint32_t *scattering,
-                           float *eta) {
+void opal_test_bsdf_sample(const opal_test_bsdf *bsdf, int32_t n, const float *u, float *wi, float *weight, float *pdf,
+                           uint32_t *scattering, float *eta) {
   const opal::Case c(*bsdf);
   for (int i = 0; i < n; ++i) {
     opal::BsdfSample s;
