@@ -196,9 +196,10 @@ def glass(name: str, index: float, dispersion: float = 0.0, colour: Sequence[flo
 
 
 def limit(scene: bpy.types.Scene, passes: int, photons: int, seconds: float = 170.0) -> None:
-    """Passes and photons a pass of Opal, and the time after which the render ends at the latest; nothing where the engine is not there."""
+    """Passes and photons a pass of Opal, denoised, and the time after which the render ends at the latest; nothing without the engine."""
     if hasattr(scene, "opal"):
         scene.opal.passes, scene.opal.photons_per_pass, scene.opal.time_limit = passes, photons, seconds
+        scene.opal.denoise = True
 
 
 def _with_nodes(name: str) -> bpy.types.Material:

@@ -40,8 +40,9 @@ def build() -> bpy.types.Scene:
         spot_blend=0.15,
     )
     _scene.hdri(_scene.studio_light("studio"), 1.1, math.radians(150.0))
-    _scene.camera((0.006, -0.062, 0.038), (-0.0008, -0.0022, 0.0010), 98.0, fstop=22.0, focus=(0.0, -0.002, 0.003))
+    _scene.camera((0.006, -0.062, 0.038), (-0.0008, -0.0022, 0.0010), 98.0, fstop=32.0, focus=(0.0, -0.002, 0.003))
     scene.render.resolution_x, scene.render.resolution_y = 960, 640
+    scene.view_settings.exposure = 0.8
     _scene.limit(scene, 256, 400_000)
     return scene
 

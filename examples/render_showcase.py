@@ -35,11 +35,12 @@ def build() -> bpy.types.Scene:
         cut = CUTS[cut_name].build()
         stone = _scene.stone(f"{species.title()} {cut_name.title()}", cut, width, _scene.gem(species.title(), species))
         _scene.rest_on_facet(stone, cut.names.index(facet), place, math.radians(facing))
-    _scene.stage(0.5, _scene.matte("Table", (0.38, 0.37, 0.36)), depth=0.08, wall=0.15)
-    _scene.lamp("Lamp", "AREA", (-0.050, 0.100, 0.046), (0.0, 0.0, 0.0), 0.75, shape="DISK", size=0.004)
+    _scene.stage(0.5, _scene.matte("Table", (0.33, 0.32, 0.31)), depth=0.08, wall=0.15)
+    _scene.lamp("Lamp", "AREA", (-0.050, 0.100, 0.046), (0.0, 0.0, 0.0), 0.52, shape="DISK", size=0.004)
     _scene.hdri(_scene.studio_light("interior"), 0.12, math.radians(-60.0))
-    _scene.camera((0.006, -0.080, 0.062), (0.0010, 0.0008, 0.0012), 104.0, fstop=16.0, focus=(0.0, -0.004, 0.002))
+    _scene.camera((0.006, -0.080, 0.062), (0.0010, 0.0008, 0.0012), 104.0, fstop=22.0, focus=(0.0, -0.004, 0.002))
     scene.render.resolution_x, scene.render.resolution_y = 720, 480
+    scene.view_settings.exposure = 0.25
     _scene.limit(scene, 256, 400_000, TIME_LIMIT)
     return scene
 
