@@ -61,15 +61,13 @@ def opal(request):
 
 @pytest.fixture(autouse=True)
 def _fresh_file(request):
-    """An empty file with Opal enabled before every test that uses Blender."""
+    """An empty file before every test that uses Blender; preferences, and with them the extension, stay."""
     if "kernels" in Path(request.node.fspath).parts or getattr(request.config, "opal", None) is None:
         yield
         return
-    import addon_utils
     import bpy
 
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    addon_utils.enable(PACKAGE, default_set=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     yield
 
 
