@@ -94,12 +94,12 @@ def build(
 def _sizes(theory: str, radius_um: float, nm: np.ndarray) -> int:
     """How many sizes average the ripple of Lorenz-Mie theory away.
 
-    Measured on the peak of bows with 5 % spread: within 1 % of four times as many. Small drops have sharp resonances and need
-    many sizes, but cost little; large ones average over angle as well.
+    Measured on primaries of 5 % spread at 550 nm under a point sun, against four times as many: the peak is within 1.5 % from 20
+    to 250 um radius and 3.5 % at 500, single angles within 2.5 % of the peak (3.6 at 500). Ask for more `sizes` where that shows.
     """
     if theory != "MIE" or not radius_um > 0:
         return _DEFAULT_SIZES.get(theory, 48)
-    return int(np.clip(4.5e4 / (2000 * np.pi * radius_um / nm.mean()), 48, 240))
+    return int(np.clip(1.44e5 / (2000 * np.pi * radius_um / nm.mean()), 48, 240))
 
 
 def _grid(theory: str, radii: np.ndarray, nm: float) -> int:

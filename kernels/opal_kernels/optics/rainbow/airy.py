@@ -9,9 +9,10 @@ with the signed amplitude factor t_j(b) = (1 - r_j^2) r_j^k at the caustic (t0) 
 term is the linear change of the amplitude across the wavefront, a quarter period out of phase; it is small for the perpendicular
 component and most of the parallel one, whose r changes sign near the caustic.
 
-Away from the caustic the cubic no longer holds: the mean over the supernumeraries drifts from that of the rays, by 6 per cent
-within five degrees of the primary and by 20 within two of the secondary. In tables it is led back to theirs (`ray_ratio`), and far away the order is its rays. Sources: Airy, Trans. Camb. Phil. Soc. 6
-(1838) 379; van de Hulst 1957, 13.23; Konnen and de Boer, Appl. Opt. 18 (1979) 1961 (the parallel supernumeraries).
+Away from the caustic the cubic no longer holds: two degrees from it the rays bring 8 (perpendicular) and 11 per cent (parallel) less
+than Airy's mean in the primary, 22 and 8 in the secondary. In tables the mean is led
+back to theirs (`ray_ratio`), and far away the order is its rays; `bow` is Airy's formula alone. Sources: Airy, Trans. Camb. Phil.
+Soc. 6 (1838) 379; van de Hulst 1957, 13.23; Konnen and de Boer, Appl. Opt. 18 (1979) 1961 (the parallel supernumeraries).
 """
 
 from __future__ import annotations

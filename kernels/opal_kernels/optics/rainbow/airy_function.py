@@ -2,7 +2,7 @@
 """Airy's function Ai and its derivative for real arguments, in NumPy.
 
 Power series (DLMF 9.4) between -7 and 5, where double precision allows them; asymptotic expansions (DLMF 9.7) beyond. Relative
-accuracy 1e-7 or better near 5, 1e-9 elsewhere. Ai(0) = 1/(3^(2/3) Gamma(2/3)), Ai'(0) = -1/(3^(1/3) Gamma(1/3)).
+accuracy, measured against SciPy: 3e-8 between 5 and 6, 3e-9 elsewhere from -400 to 30. Ai(0) = 1/(3^(2/3) Gamma(2/3)), Ai'(0) = -1/(3^(1/3) Gamma(1/3)).
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ def _squares() -> tuple[np.ndarray, np.ndarray]:
 def squares(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return (Ai^2(-x), Ai'^2(-x)) from a table, linear in steps of 0.002: the sky asks for millions.
 
-    Accurate to 1e-6 of the mean up to x = 40 and 1e-3 at 400; below -9 and above 420 the end values hold.
+    Measured against SciPy: 1e-4 of the mean over the oscillation up to x = 40, 1e-3 up to 400; below -9 and above 420 the end values hold.
     """
     place = (np.clip(x, _TABLE_FIRST, _TABLE_LAST) - _TABLE_FIRST) / _TABLE_STEP
     i = place.astype(np.int64)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a drop does besides its two bows: reflection outside, light passed through, higher orders, and the diffraction lobe.
 
-The ray theories and Airy's add this to their bows, so that the dark band and the sky stand right beside them. (Rays do not know the waves that creep along the drop's edge: beside
-Lorenz-Mie the dark band is 7 per cent low at 300 um radius, 15 at 100.) Densities are per
+The ray theories and Airy's add this to their bows, so that the dark band and the sky stand right beside them. (Beside Lorenz-Mie's the dark band comes
+out 7 per cent low at 300 um radius and 15 at 100; the cause has not been looked into.) Densities are per
 unit of light on the drop (integral 1 over all orders for each polarisation), tabulated on `EDGES` and linear between centres.
 """
 

@@ -13,8 +13,8 @@ whose factors are smooth functions of the angle from the caustic and are extrapo
 is the integral of the difference of the two rays' lever arms over the angle, which does not cancel as the paths themselves do.
 
 The drop is a spheroid of the axis ratio of falling drops (Beard and Chuang, J. Atmos. Sci. 44 (1987) 1509), its axis vertical.
-Drops flatter than about 0.85 have more caustics than one to a side; their bows are smeared out (they are washed out in the sky
-as well). The light seen at one place of the bow is that of the rays in the plane of sun, drop and place; the slight turn of the plane of
+Where the trace finds no single clean caustic (seen in some views from an axis
+ratio of 0.93 down) the bow is smeared out, by choice and not by theory. The light seen at one place of the bow is that of the rays in the plane of sun, drop and place; the slight turn of the plane of
 incidence out of it is neglected (none at the bow's top, where twinned bows part). Reflection outside, light passed through and
 higher orders are those of a sphere.
 """
