@@ -55,8 +55,8 @@ def build() -> bpy.types.Scene:
     toward = (math.cos(SUN_HEIGHT), 0.0, -math.sin(SUN_HEIGHT))
     _scene.lamp("Sun", "SUN", [-t for t in toward], (0.0, 0.0, 0.0), 90.0, angle=math.radians(0.2))
     _scene.plain_world((0.5, 0.6, 1.0), 0.02)
-    _scene.lamp("Window", "AREA", (0.10, 0.35, 0.30), (0.0, 0.0, 0.0), 0.06, shape="RECTANGLE", size=0.30, size_y=0.12)
-    _scene.camera((0.050, -0.24, 0.27), (0.026, -0.042, 0.0), 60.0, fstop=5.6, focus=(0.0, -0.005, 0.01))
+    _scene.lamp("Window", "AREA", (0.10, 0.35, 0.30), (0.0, 0.0, 0.0), 0.20, shape="RECTANGLE", size=0.30, size_y=0.12)
+    _scene.camera((0.050, -0.24, 0.27), (0.022, -0.034, 0.0), 58.0, fstop=5.6, focus=(0.0, -0.005, 0.01))
     scene.render.resolution_x, scene.render.resolution_y = 960, 640
     _scene.limit(scene, 256, 400_000)
     return scene
