@@ -5,7 +5,7 @@
 One reader a node, in files by subject: `shaders`, `textures`, `converters`, `vectors`, `inputs`.
 """
 
-from .compile import compile_light_nodes, compile_material, compile_world
+from .compile import compile_light_nodes, compile_material, compile_missing, compile_world
 from .context import CompiledProgram, NodeContext, Problem
 
-__all__ = ["CompiledProgram", "NodeContext", "Problem", "compile_light_nodes", "compile_material", "compile_world"]
+__all__ = ["CompiledProgram", "NodeContext", "Problem", "compile_light_nodes", "compile_material", "compile_missing", "compile_world"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import bpy
 import numpy as np
 
 # The readers register themselves.
@@ -48,6 +49,17 @@ def compile_material(material: Any, context: NodeContext) -> CompiledProgram:
     if output.inputs["Volume"].is_linked:
         compiler.problem(output.name, "Volumes are not read from node trees; the surface alone is shown.")
     _shade(compiler, frame, output)
+    return _finished(compiler)
+
+
+def compile_missing(context: NodeContext) -> CompiledProgram:
+    """What a face without a material shows, as in Cycles: since Blender 5 a Principled surface as new, before a matte one."""
+    compiler = Compiler(None, context)
+    grey = constant(0.8, 0.8, 0.8)
+    if bpy.app.version >= (5, 0):
+        _principled(compiler.builder, grey, metallic=0.0, roughness=0.5)
+    else:
+        compiler.builder.emit(Op.DIFFUSE, 0, ONE, grey, ZERO, None)
     return _finished(compiler)
 
 
@@ -117,7 +129,12 @@ def _without_nodes(builder: ProgramBuilder, material: Any) -> None:
     if material.metallic == 0:
         builder.emit(Op.DIFFUSE, 0, ONE, color, ZERO, None)
         return
-    packed = builder.pack(*(constant(x) for x in (material.metallic, material.roughness, 1.5, 1.0)))
+    _principled(builder, color, material.metallic, material.roughness)
+
+
+def _principled(builder: ProgramBuilder, color: Value, metallic: float, roughness: float) -> None:
+    """A Principled surface with everything else as in a new node."""
+    packed = builder.pack(*(constant(x) for x in (metallic, roughness, 1.5, 1.0)))
     plain = builder.pack_color(ONE, ZERO)
     tint = builder.pack_color(ONE, constant(0.5))
     zeros = builder.pack(ZERO, ZERO, ZERO, ZERO)

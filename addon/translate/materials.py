@@ -11,10 +11,9 @@ from opal_kernels.optics import species
 from opal_kernels.scene import Scene
 
 from .. import presets
+from ..nodes import compile_material, compile_missing
 from ..report import Report
 from . import media
-
-DEFAULT_GREY = -1  # what the kernels take for a face without a material
 
 
 class Materials:
@@ -38,23 +37,23 @@ class Materials:
         self._numbers: dict[int, int] = {}
 
     def number(self, material: Any) -> int:
-        """The kernels' number of an evaluated material; None gives the default grey."""
-        if material is None:
-            return DEFAULT_GREY
-        key = material.as_pointer()
+        """The kernels' number of an evaluated material; None gives what Blender shows without one."""
+        key = material.as_pointer() if material is not None else 0
         if key not in self._numbers:
             self._numbers[key] = self._add(material)
         return self._numbers[key]
 
     def _add(self, material: Any) -> int:
+        if material is None:
+            return self._add_program(compile_missing(self._context))
         settings = material.opal
         if settings.kind == "GEM":
             return self._add_gem(material.name, settings.gem)
         if settings.kind in {"MEDIUM", "RAINBOW"}:
             return self._add_filling(material.name, settings)
-        from ..nodes import compile_material  # the node readers are only loaded for a render
+        return self._add_program(compile_material(material, self._context))
 
-        compiled = compile_material(material, self._context)
+    def _add_program(self, compiled: Any) -> int:
         self._context.note(compiled.problems)
         self._context.program_compiled(compiled.code)
         flags = MaterialFlag(0)

@@ -101,7 +101,7 @@ class SceneBuilder:
         if world is not None:
             self.scene.set_world(world)
         for group in visible.groups:
-            snapshot.materials.append([self._materials.number(material) for material in group.materials])
+            snapshot.materials.append([self._materials.number(m) for m in group.materials or (None,)])
 
         needs = self._context.mesh_needs()
         for count, group in enumerate(visible.groups):

@@ -235,6 +235,21 @@ def test_material_slots_choose_the_material_of_each_face(tmp_path):
     assert right[..., 1].mean() > 0.8 > 20 * abs(right[..., 0].mean())
 
 
+def test_a_face_without_material_shows_what_cycles_shows(tmp_path):
+    scene = stage.scene(width=32, height=8, passes=4, samples=16)
+    stage.camera((0, -5, 0.7), (1.45, 0, 0))
+    stage.plane(size=200)
+    sun = bpy.data.lights.new("Sun", "SUN")
+    sun.energy = 3
+    stage.link("Sun", sun).rotation_euler = (0.9, 0.3, 0)
+    ours = stage.render(tmp_path)[..., :3]
+    scene.render.engine = "CYCLES"
+    scene.cycles.samples = 64
+    scene.cycles.use_denoising = False
+    theirs = stage.render(tmp_path)[..., :3]
+    np.testing.assert_allclose(ours.mean((1, 2)), theirs.mean((1, 2)), rtol=5e-3)
+
+
 def test_an_object_linked_slot_wins_over_the_mesh_s_material(tmp_path):
     stage.scene()
     stage.camera((0, 0, 5))

@@ -154,6 +154,18 @@ def test_a_uniform_world_over_a_grey_floor_gives_half_its_radiance(scene):
 
 
 @needs_embree
+@pytest.mark.parametrize("materials", [(), (-1,)])
+def test_faces_without_a_material_are_a_matte_grey(scene, materials):
+    scene.add_material(programs.diffuse((0.0, 0.0, 0.0)))
+    scene.add_instances(scene.add_mesh(SQUARE * 10, HALVES), [np.eye(4)], materials)
+    scene.set_world(World(programs.emission()))
+    scene.set_camera(transform=ABOVE)
+    scene.commit()
+    with Render(scene, width=8, height=8, samples_per_pass=64, photons_per_pass=0) as render:
+        np.testing.assert_allclose(render.run(4).film()[..., :3].mean((0, 1)), 0.8, rtol=0.01)
+
+
+@needs_embree
 def test_a_black_world_and_no_lamp_is_black_and_a_lamp_lights(scene):
     floor(scene)
     scene.set_world(None)

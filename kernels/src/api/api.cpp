@@ -88,6 +88,21 @@ Material material_from(const Scene &scene, const opal_material_desc &desc) {
   return m;
 }
 
+// Material 0 of every scene: what faces without a material show, a matte grey of 0.8.
+Material default_grey() {
+  opal_instruction diffuse = {OPAL_OP_DIFFUSE, 0, -1, {-1, 0, 1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1}};
+  const float constants[8] = {0.8f, 0.8f, 0.8f, 0.8f};
+  opal_program desc{};
+  desc.code = &diffuse;
+  desc.n_instructions = 1;
+  desc.n_constants = desc.n_registers = 2;
+  desc.constants = constants;
+  Material material;
+  const char *error = nullptr;
+  if (!program_from_desc(desc, 0, material.surface, &error)) throw std::logic_error(error);
+  return material;
+}
+
 void set_transform(Instance &instance, const float *begin, const float *end) {
   instance.to_world = transform_from(begin);
   instance.to_object = inverse(instance.to_world);
@@ -137,6 +152,7 @@ opal_scene *opal_scene_create(const opal_tables *tables, const char *embree_path
       throw EmbreeError("Opal needs Embree 4; the library found has version " + std::to_string(made->embree.version));
     made->embree.ray_mask = made->embree.device_property(made->device, kRtcPropertyRayMask) != 0;
     made->camera.type = OPAL_CAMERA_PERSPECTIVE;
+    made->materials.push_back(default_grey());
     scene = made.release();
     return 0;
   });
