@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Light through gems beside closed forms (PHYSICS §5.1 and 5.2): furnaces, Beer and Lambert, plates, and white that stays white."""
+
+import math
+
+import numpy as np
+import pytest
+from opal_kernels import programs
+from opal_kernels.cuts import round_brilliant
+from opal_kernels.descriptions import Light, LightType, MaterialFlag, World, wavelengths
+from opal_kernels.optics import species
+from opal_kernels.scene import Scene
+from transport_scenes import IDENTITY, box, looking_down, orthographic, picture, square
+
+DEEP = {"max_depth": 1024, "photons_per_pass": 0}
+
+
+def brilliant(scene, index):
+    solid = round_brilliant().scaled(1.0).solid
+    faces = [(f[0], f[i], f[i + 1]) for f in solid.faces for i in range(1, len(f) - 1)]
+    scene.add_instances(scene.add_mesh(solid.vertices, faces), IDENTITY, [scene.add_gem(index)])
+    scene.set_world(World(programs.emission()))
+    scene.set_camera(**orthographic(0.55, looking_down(2.0)))
+    scene.commit()
+
+
+@pytest.mark.parametrize("index", [1.333, 1.5, 2.417])
+def test_lossless_gem_vanishes_in_a_white_furnace(index):
+    """Every pixel is 1: reflected, refracted and totally reflected light adds up, whatever the chain of facets."""
+    with Scene(threads=2) as scene:
+        brilliant(scene, index)
+        image = picture(scene, 16, samples_per_pass=16, **DEEP)
+    assert image == pytest.approx(1.0, abs=0.005), f"pixels from {image.min():.4f} to {image.max():.4f}"
+
+
+def test_diamond_vanishes_in_a_white_furnace():
+    """With its dispersion: paths part by colour, so pixels are noisy, and the mean is white within 4 standard errors and 0.5 %."""
+    with Scene(threads=2) as scene:
+        brilliant(scene, species.index("DIAMOND", wavelengths()))
+        image = picture(scene, 16, size=24, samples_per_pass=32, **DEEP)
+    mean, error = image.mean(axis=(0, 1)), image.std(axis=(0, 1)) / 24
+    assert error.max() < 0.002, f"too noisy to tell: {error}"
+    assert mean == pytest.approx(1.0, abs=0.005), f"{mean} ± {error}"
+
+
+# σd and the transmittance of a plate at normal incidence, with all interreflections (PHYSICS §5.2).
+PLATES = [
+    (1.0, 0.5, 0.606531),
+    (1.0, 1.0, 0.367879),
+    (1.0, 2.0, 0.135335),
+    (1.5, 0.0, 0.923077),
+    (1.5, 0.5, 0.559308),
+    (1.5, 1.0, 0.339111),
+    (1.5, 2.0, 0.124729),
+    (2.4173, 0.0, 0.706468),
+    (2.4173, 1.0, 0.253219),
+]
+
+
+@pytest.mark.parametrize("index, depth, transmittance", PLATES)
+def test_plate_transmits_as_beer_and_lambert_say(index, depth, transmittance):
+    with Scene(threads=2) as scene:
+        plate = scene.add_gem(index, depth / 0.25)
+        glow = scene.add_material(programs.emission(), flags=MaterialFlag.EMISSIVE)
+        scene.add_instances(scene.add_mesh(*box((-3, -3, 0), (3, 3, 0.25))), IDENTITY, [plate])
+        scene.add_instances(scene.add_mesh(*square(3, -0.5)), IDENTITY, [glow])
+        scene.set_camera(**orthographic(0.5, looking_down(2.0)))
+        scene.commit()
+        image = picture(scene, 16, samples_per_pass=32, **DEEP)
+    error = image.std() / math.sqrt(image.size / 3)
+    assert error < 0.004 * transmittance
+    assert image.mean(axis=(0, 1)) == pytest.approx(transmittance, rel=0.003, abs=4 * error)
+
+
+@pytest.mark.parametrize("glass", ["BK7", "SF11"])
+def test_wall_lit_through_glass_is_as_bright_as_fresnel_says_and_white(glass):
+    """A sun through a plate on a dark wall, by photons: R = ((n-1)/(n+1))², T = (1-R)/(1+R). The wall sends 2 % back, the plate a
+    seventh of that, which is allowed for. Between red and blue the plate itself differs by half a percent (SF11)."""
+    reflectance = 0.02
+    index = species.index(glass, wavelengths())
+    with Scene(threads=2) as scene:
+        scene.add_instances(scene.add_mesh(*box((-0.35, -0.35, 0.5), (0.35, 0.35, 0.6))), IDENTITY, [scene.add_gem(index)])
+        wall = scene.add_material(programs.diffuse((reflectance,) * 3))
+        scene.add_instances(scene.add_mesh(*square(1)), IDENTITY, [wall])
+        scene.add_light(Light(type=LightType.SUN, power=math.pi / reflectance, radius=0.002, transform=looking_down(5.0)))
+        scene.set_camera(**orthographic(0.3, looking_down(0.4)))
+        scene.commit()
+        image = picture(scene, 24, size=12, samples_per_pass=1, photons_per_pass=100_000, max_depth=64)
+    n = float(np.interp(550, wavelengths(), index))
+    r = ((n - 1) / (n + 1)) ** 2
+    expected = (1 - r) / (1 + r) * (1 + reflectance * 0.15)
+    mean, error = image.mean(axis=(0, 1)), image.std(axis=(0, 1)) / 12
+    assert error.max() < 0.003, f"too noisy to tell: {error}"
+    assert mean == pytest.approx(expected, rel=0.005), f"{mean} ± {error}, expected {expected:.4f}"
+    assert mean / mean[1] == pytest.approx(1.0, abs=0.003 + 3 * error.max()), "the wall has a cast"
+
+
+def test_index_matched_gem_is_not_there():
+    """With a small first radius: the rim of a caustic seen through its gem is blurred over the rim by the photons' kernel."""
+
+    def image(with_gem):
+        with Scene(threads=2) as scene:
+            wall = scene.add_material(programs.diffuse((0.8, 0.5, 0.2)))
+            scene.add_instances(scene.add_mesh(*square(2)), IDENTITY, [wall])
+            if with_gem:
+                scene.add_instances(scene.add_mesh(*box((-0.3, -0.3, 0.2), (0.3, 0.3, 0.5))), IDENTITY, [scene.add_gem(1.0)])
+            scene.add_light(Light(type=LightType.SUN, power=2.0, radius=0.05, transform=looking_down(5.0)))
+            scene.set_world(World(programs.emission((0.3, 0.4, 0.5))))
+            scene.set_camera(**orthographic(0.6, looking_down(2.0)))
+            scene.commit()
+            return picture(scene, 16, samples_per_pass=8, photons_per_pass=100_000, radius=0.003)
+
+    seen, bare = image(True), image(False)
+    assert seen.mean(axis=(0, 1)) == pytest.approx(bare.mean(axis=(0, 1)), rel=0.005)
