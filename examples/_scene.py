@@ -66,7 +66,9 @@ def sphere(name: str, centre: Sequence[float], radius: float, material: bpy.type
         polar = math.pi * i / rings
         for j in range(segments):
             azimuth = math.tau * j / segments
-            vertices.append((radius * math.sin(polar) * math.cos(azimuth), radius * math.sin(polar) * math.sin(azimuth), radius * math.cos(polar)))
+            vertices.append(
+                (radius * math.sin(polar) * math.cos(azimuth), radius * math.sin(polar) * math.sin(azimuth), radius * math.cos(polar))
+            )
     vertices.append((0.0, 0.0, -radius))
     last = len(vertices) - 1
     faces = [(0, 1 + j, 1 + (j + 1) % segments) for j in range(segments)]
@@ -190,7 +192,9 @@ def gem(name: str, species: str, **settings: object) -> bpy.types.Material:
     return material
 
 
-def glass(name: str, index: float, dispersion: float = 0.0, colour: Sequence[float] = (1.0, 1.0, 1.0), depth: float = 0.01) -> bpy.types.Material:
+def glass(
+    name: str, index: float, dispersion: float = 0.0, colour: Sequence[float] = (1.0, 1.0, 1.0), depth: float = 0.01
+) -> bpy.types.Material:
     """A transparent body by Cauchy's formula n = index + dispersion/λ² (µm²); white light becomes `colour` in `depth` metres of it."""
     return gem(name, "CUSTOM", dispersion="CAUCHY", cauchy_b=index, cauchy_c=dispersion, absorption_color=colour, absorption_depth=depth)
 
@@ -317,7 +321,9 @@ def use_engine(scene: bpy.types.Scene, engine: str) -> None:
         If Opal is asked for and not installed.
     """
     if engine == "OPAL" and not hasattr(bpy.types.Scene, "opal"):
-        raise RuntimeError(f"the extension Opal is not enabled: install the zip that `make zip` leaves in {ROOT / 'dist'}, or pass --engine CYCLES")
+        raise RuntimeError(
+            f"the extension Opal is not enabled: install the zip that `make zip` leaves in {ROOT / 'dist'}, or pass --engine CYCLES"
+        )
     scene.render.engine = engine
 
 

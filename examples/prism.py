@@ -42,7 +42,9 @@ def prism_at_minimum_deviation(material: bpy.types.Material) -> bpy.types.Object
 def card_with_slit(material: bpy.types.Material) -> bpy.types.Object:
     """A wall across the beam with a slit on the paper: it keeps the sun off everything else."""
     w, h, x, wide, high = 0.5 * SLIT_WIDTH, SLIT_HEIGHT, -SLIT_DISTANCE, 3.0, 0.8
-    vertices = [(x, y, z) for y, z in ((-wide, 0), (-w, 0), (-w, h), (-wide, h), (w, 0), (wide, 0), (wide, h), (w, h), (-wide, high), (wide, high))]
+    vertices = [
+        (x, y, z) for y, z in ((-wide, 0), (-w, 0), (-w, h), (-wide, h), (w, 0), (wide, 0), (wide, h), (w, h), (-wide, high), (wide, high))
+    ]
     return _scene.mesh("Card", vertices, [(0, 1, 2, 3), (4, 5, 6, 7), (3, 2, 7, 6, 9, 8)], material)
 
 

@@ -50,7 +50,10 @@ class OPAL_OT_add_gem(bpy.types.Operator, AddObjectHelper):
     bl_options = {"REGISTER", "UNDO"}
 
     cut: EnumProperty(
-        name="Cut", description="How the stone is cut; choosing one sets its usual proportions", items=cut_items, update=_take_usual_proportions
+        name="Cut",
+        description="How the stone is cut; choosing one sets its usual proportions",
+        items=cut_items,
+        update=_take_usual_proportions,
     )
     species: EnumProperty(name="Species", description="What the stone is", items=species_items)
     size: FloatProperty(
@@ -79,7 +82,9 @@ class OPAL_OT_add_gem(bpy.types.Operator, AddObjectHelper):
     height: _share("Height", "Height of the dome over the girdle, as a part of the stone's width", 1.5)
     star_height: _share("Star Height", "Height of the stars' lower corners over the girdle, as a part of the stone's width")
     chevrons: IntProperty(name="Chevrons", description="Rows of eight facets below the girdle", default=4, min=2, max=5)
-    girdle_facets: IntProperty(name="Girdle Facets", description="Sides of the girdle, a multiple of 16", default=96, min=16, max=960, step=16)
+    girdle_facets: IntProperty(
+        name="Girdle Facets", description="Sides of the girdle, a multiple of 16", default=96, min=16, max=960, step=16
+    )
     segments: IntProperty(name="Segments", description="Corners round the stone, a multiple of 4", default=96, min=8, max=1024, step=4)
     rings: IntProperty(name="Rings", description="Steps from the girdle to the top", default=24, min=2, max=256)
 

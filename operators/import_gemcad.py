@@ -58,7 +58,9 @@ class OPAL_OT_import_gemcad(bpy.types.Operator, ImportHelper):
         index = design.refractive_index if self.species == gem_object.CUSTOM and design.refractive_index else None
         mesh.materials.append(gem_object.gem_material(self.species, index))
         object_data_add(context, mesh)
-        self.report({"INFO"}, f"{' '.join(design.headers) or path.stem}: {stone.facet_count()} facets, {gem_object.weight(stone, self.species)}")
+        self.report(
+            {"INFO"}, f"{' '.join(design.headers) or path.stem}: {stone.facet_count()} facets, {gem_object.weight(stone, self.species)}"
+        )
         return {"FINISHED"}
 
 

@@ -74,7 +74,9 @@ def test_a_gemcad_file_becomes_a_stone_of_its_refractive_index(tmp_path):
     assert settings.cauchy_b == pytest.approx(1.54, abs=1e-6)
 
 
-@pytest.mark.parametrize(("text", "sentence"), [("GemCad 5.0\ng 96 0\na 141 0.5 96\n", "broken.asc: line 3"), ("a stone", "broken.asc: line 1")])
+@pytest.mark.parametrize(
+    ("text", "sentence"), [("GemCad 5.0\ng 96 0\na 141 0.5 96\n", "broken.asc: line 3"), ("a stone", "broken.asc: line 1")]
+)
 def test_a_broken_gemcad_file_is_refused_with_its_line(tmp_path, text, sentence):
     path = tmp_path / "broken.asc"
     path.write_text(text)

@@ -34,7 +34,14 @@ class Plan:
 
     @classmethod
     def from_angles(
-        cls, table: float, crown_angle: float, pavilion_angle: float, girdle: float, star_length: float, lower_half_length: float, culet: float
+        cls,
+        table: float,
+        crown_angle: float,
+        pavilion_angle: float,
+        girdle: float,
+        star_length: float,
+        lower_half_length: float,
+        culet: float,
     ) -> Plan:
         """From the angles (radians) that facets half a width from the axis have."""
         check_fraction("table", table, 0.2, 0.9)
@@ -124,7 +131,9 @@ def oval(
 ) -> Stone:
     """An oval brilliant: the round one stretched to `ratio` times its width; angles in radians."""
     check_fraction("ratio", ratio, 1.0, 2.0)
-    return brilliant_on(outlines.ellipse(ratio), Plan.from_angles(table, crown_angle, pavilion_angle, girdle, star_length, lower_half_length, culet))
+    return brilliant_on(
+        outlines.ellipse(ratio), Plan.from_angles(table, crown_angle, pavilion_angle, girdle, star_length, lower_half_length, culet)
+    )
 
 
 def cushion(
@@ -140,7 +149,9 @@ def cushion(
 ) -> Stone:
     """A cushion: a brilliant on a square or rectangle with round sides and corners; angles in radians."""
     check_fraction("ratio", ratio, 1.0, 1.6)
-    return brilliant_on(outlines.cushion(ratio), Plan.from_angles(table, crown_angle, pavilion_angle, girdle, star_length, lower_half_length, culet))
+    return brilliant_on(
+        outlines.cushion(ratio), Plan.from_angles(table, crown_angle, pavilion_angle, girdle, star_length, lower_half_length, culet)
+    )
 
 
 def pear(
@@ -156,7 +167,9 @@ def pear(
 ) -> Stone:
     """A pear brilliant, its tip at +x and its culet under the round end's centre; angles in radians."""
     check_fraction("ratio", ratio, 1.15, 2.2)
-    return brilliant_on(outlines.pear(ratio), Plan.from_angles(table, crown_angle, pavilion_angle, girdle, star_length, lower_half_length, culet))
+    return brilliant_on(
+        outlines.pear(ratio), Plan.from_angles(table, crown_angle, pavilion_angle, girdle, star_length, lower_half_length, culet)
+    )
 
 
 def marquise(
@@ -172,7 +185,9 @@ def marquise(
 ) -> Stone:
     """A marquise brilliant, its tips at ±x; angles in radians."""
     check_fraction("ratio", ratio, 1.3, 2.6)
-    return brilliant_on(outlines.marquise(ratio), Plan.from_angles(table, crown_angle, pavilion_angle, girdle, star_length, lower_half_length, culet))
+    return brilliant_on(
+        outlines.marquise(ratio), Plan.from_angles(table, crown_angle, pavilion_angle, girdle, star_length, lower_half_length, culet)
+    )
 
 
 def trillion(
@@ -188,4 +203,6 @@ def trillion(
 ) -> Stone:
     """A trillion: six stations on a round-sided triangle, 43 facets; angles in radians, `bulge` the sides' height over their chords."""
     check_fraction("bulge", bulge, 0.04, 0.13)
-    return brilliant_on(outlines.trillion(bulge), Plan.from_angles(table, crown_angle, pavilion_angle, girdle, star_length, lower_half_length, culet))
+    return brilliant_on(
+        outlines.trillion(bulge), Plan.from_angles(table, crown_angle, pavilion_angle, girdle, star_length, lower_half_length, culet)
+    )

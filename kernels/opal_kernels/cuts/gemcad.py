@@ -86,13 +86,19 @@ class Design:
         facets = FacetPlanes()
         for tier in self.tiers:
             down = math.copysign(1.0, tier.angle) < 0.0
-            name = tier.name or ("table" if tier.angle == 0.0 and not down else f"{'P' if down else 'C'}{abs(math.degrees(tier.angle)):.2f}")
+            name = tier.name or (
+                "table" if tier.angle == 0.0 and not down else f"{'P' if down else 'C'}{abs(math.degrees(tier.angle)):.2f}"
+            )
             name = "girdle" if abs(abs(tier.angle) - 0.5 * math.pi) < math.radians(0.01) else name
             for index in tier.indices or (0.0,):
                 azimuth = math.tau * (index - self.offset) / self.gear
                 slope = abs(tier.angle)
                 normal = np.array(
-                    (math.sin(slope) * math.cos(azimuth), math.sin(slope) * math.sin(azimuth), -math.cos(slope) if down else math.cos(slope))
+                    (
+                        math.sin(slope) * math.cos(azimuth),
+                        math.sin(slope) * math.sin(azimuth),
+                        -math.cos(slope) if down else math.cos(slope),
+                    )
                 )
                 facets.through(name, normal, tier.distance * normal)
         try:

@@ -46,7 +46,9 @@ def _round(**proportions: float) -> Stone:
 
 
 CUTS: dict[str, Cut] = {
-    "BRILLIANT": Cut("Round Brilliant", "57 facets, 58 with a culet", _round, {f.name: f.default for f in dataclasses.fields(BrilliantProportions)}),
+    "BRILLIANT": Cut(
+        "Round Brilliant", "57 facets, 58 with a culet", _round, {f.name: f.default for f in dataclasses.fields(BrilliantProportions)}
+    ),
     "PRINCESS": _by_keyword("Princess", "Square, with nested chevrons below", princess.princess),
     "EMERALD": _by_keyword("Emerald", "Rectangular step cut", step_cut.emerald_cut),
     "ASSCHER": _by_keyword("Asscher", "Square step cut with large corners", step_cut.asscher_cut),

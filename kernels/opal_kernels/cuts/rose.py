@@ -32,7 +32,9 @@ def rose_cut(*, height: float = 0.45, star_height: float = 0.36, star_length: fl
     check_fraction("star_length", star_length, 0.2, 0.9)
     check_fraction("girdle", girdle, 0.001, 0.3)
     if not height * (1.0 - star_length) < star_height < height:
-        raise ValueError(f"star_height must lie between {height * (1.0 - star_length):g} and {height:g} for a dome that bulges, not {star_height!r}")
+        raise ValueError(
+            f"star_height must lie between {height * (1.0 - star_length):g} and {height:g} for a dome that bulges, not {star_height!r}"
+        )
     top = 0.5 * girdle
 
     def at(distance: float, twelfths: float, z: float) -> np.ndarray:

@@ -19,7 +19,9 @@ import numpy as np
 from .stone import FacetPlanes, Stone, check_fraction
 
 
-def step_cut(ratio: float, corner: float, girdle: float, crown: Sequence[tuple[float, float]], pavilion: Sequence[tuple[float, float]]) -> Stone:
+def step_cut(
+    ratio: float, corner: float, girdle: float, crown: Sequence[tuple[float, float]], pavilion: Sequence[tuple[float, float]]
+) -> Stone:
     """A step cut from the profile of its long sides.
 
     Parameters
