@@ -59,14 +59,6 @@ class NodeContext:
         """(UDIM number, image number) of a tiled image's readable tiles."""
         return self._images.tiles(image)
 
-    def image_index(self, image: Any, image_user: Any) -> int:
-        """The kernels' number of an image; -1 where it cannot be read."""
-        return self._images.index(image, image_user)
-
-    def image_tiles(self, image: Any) -> list[tuple[int, int]]:
-        """(UDIM number, kernels' number) of the tiles that could be read."""
-        return self._images.tiles(image)
-
     def note(self, problems: Iterable[Any]) -> None:
         """Puts what a node reader could not keep into the report."""
         for problem in problems:

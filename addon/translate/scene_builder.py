@@ -23,7 +23,6 @@ from .meshes import MeshArrays, MeshNeeds, read_mesh
 from .node_context import NodeContext
 from .world import world_from_scene
 
-
 # A stone of 6.5 mm, one carat of diamond, for the ball of 2 m in Blender's preview.
 _PREVIEW_ABSORPTION = 0.0065 / 2.0
 
@@ -96,7 +95,8 @@ class SceneBuilder:
             self._report.add(name, sentence)
 
         self._stage("Reading materials")
-        world, problems = world_from_scene(depsgraph.scene_eval.world, self._context)
+        override = getattr(depsgraph.view_layer_eval, "world_override", None)  # since Blender 5
+        world, problems = world_from_scene(override or depsgraph.scene_eval.world, self._context)
         self._context.note(problems)
         if world is not None:
             self.scene.set_world(world)

@@ -146,6 +146,19 @@ def test_each_view_layer_is_rendered_with_its_collections(tmp_path):
     assert not second_picture[..., :3].any()
 
 
+def test_world_override_of_a_view_layer_replaces_the_world(tmp_path):
+    layer = bpy.context.view_layer
+    if not hasattr(layer, "world_override"):
+        pytest.skip("this version of Blender has no world override")
+    stage.scene(passes=8, samples=8)
+    stage.camera()
+    other = stage.world((0.0, 0.0, 1.0))
+    stage.world((1.0, 0.0, 0.0))
+    layer.world_override = other
+    red, _, blue = stage.render(tmp_path)[..., :3].mean((0, 1))
+    assert blue > 0.9 and red < 0.1
+
+
 def test_material_override_of_a_view_layer_replaces_every_material(tmp_path):
     stage.scene()
     stage.camera((0, 0, 5))
