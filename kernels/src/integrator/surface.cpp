@@ -65,6 +65,28 @@ SplitValue evaluate(const Surface &surface, const Vec3 &wi, const Wavelengths &w
   return value;
 }
 
+Spectrum rough_towards_camera(const Scene &scene, const Surface &surface, const Vec3 &viewer, float distance, const Wavelengths &w) {
+  if (surface.is_gem) return bsdf_eval_rough(surface.closures, surface.sp, viewer, w, Transport::Flux);
+  ShadingPoint sp = surface.sp;
+  const Vec3 light = sp.wo;
+  if (scene.groups[sp.instance->group].holdout) return Spectrum(0.0f);
+  if (dot(viewer, sp.ng) < 0) {
+    sp.ng = -sp.ng;
+    sp.ns = -sp.ns;
+    sp.backfacing = !sp.backfacing;
+  }
+  sp.wo = viewer;
+  sp.ray_kind = OPAL_RAY_CAMERA;
+  sp.depth = 0;
+  sp.ray_length = distance;
+  ClosureSet set;
+  run_surface(scene, scene.materials[surface.material].surface, sp, set);
+  // f |cos light| with the shading normal; light is spread over, and seen from, the face itself (Veach 1997, 5.3).
+  const float received = std::abs(dot(light, sp.ng));
+  if (!(received > 1e-7f)) return Spectrum(0.0f);
+  return bsdf_eval_rough(set, sp, light, w, Transport::Radiance) * (std::abs(dot(viewer, sp.ng)) / received);
+}
+
 EventClass classify(const Surface &surface, const BsdfSample &sample, const Wavelengths &w, Transport transport, float u) {
   if (!surface.caster) return EventClass::Rough;
   if (sample.scattering & kScatterSpecular) return EventClass::Sharp;

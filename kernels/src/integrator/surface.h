@@ -31,6 +31,11 @@ struct SplitValue {
 };
 SplitValue evaluate(const Surface &surface, const Vec3 &wi, const Wavelengths &w, Transport transport);
 
+// For light that arrives from surface.sp.wo: what rough lobes send towards a camera in direction `viewer`, as
+// bsdf_eval_rough(..., Transport::Flux) would say. The surface is shaded anew as the camera sees it, because the weights of
+// layered materials (and Layer Weight, Light Path nodes) depend on who looks.
+Spectrum rough_towards_camera(const Scene &scene, const Surface &surface, const Vec3 &viewer, float distance, const Wavelengths &w);
+
 // The class of a sampled event: of a sum of rough and sharp lobes the sharp share is taken with its probability (`u`).
 EventClass classify(const Surface &surface, const BsdfSample &sample, const Wavelengths &w, Transport transport, float u);
 

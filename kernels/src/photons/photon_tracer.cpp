@@ -182,7 +182,7 @@ class PhotonPath {
     const int *region = settings_.region;
     if (!(x >= float(region[0]) && x < float(region[2]) && y >= float(region[1]) && y < float(region[3]))) return;
     if (!(scene_.groups[surface_.sp.instance->group].visibility & OPAL_RAY_CAMERA)) return;
-    const Spectrum f = bsdf_eval_rough(surface_.closures, surface_.sp, seen.to_camera, w_, Transport::Flux);
+    const Spectrum f = rough_towards_camera(scene_, surface_, seen.to_camera, seen.distance, w_);
     Spectrum radiance = flux * f * (seen.importance * float(settings_.width) * float(settings_.height));
     if (radiance.is_zero() || !radiance.is_finite()) return;
     const Ray shadow{offset_origin(surface_.sp, seen.to_camera), seen.to_camera, 0, seen.distance, ray_.time};
