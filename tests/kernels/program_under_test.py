@@ -47,8 +47,25 @@ class Program:
         return np.array(self.code, np.int32).reshape(-1, 16), constants, self.n_constants + self.n_variables
 
 
-def run(code, constants, n_registers, points=((0.0, 0.0, 1.0),)):
-    """Emission and transmittance at points, each (n, 3).
+class _Structure(ctypes.Structure):
+    """`opal_program` of opal.h."""
+
+    _fields_ = [
+        ("code", ctypes.c_void_p),
+        ("n_instructions", ctypes.c_int32),
+        ("n_constants", ctypes.c_int32),
+        ("constants", ctypes.c_void_p),
+        ("n_registers", ctypes.c_int32),
+        ("reserved", ctypes.c_int32),
+    ]
+
+
+def _address(array):
+    return None if array is None else ctypes.c_void_p(array.ctypes.data)
+
+
+def run(code, constants, n_registers, points=((0.0, 0.0, 1.0),), scene=None, hits=None, ray_length=1.0):
+    """Emission and transmittance at points, each (n, 3); arguments as in `opal_test_shader.h`.
 
     Raises
     ------
@@ -58,24 +75,21 @@ def run(code, constants, n_registers, points=((0.0, 0.0, 1.0),)):
     code = np.ascontiguousarray(code, np.int32)
     constants = np.ascontiguousarray(constants, np.float32)
     points = np.ascontiguousarray(points, np.float32)
-    structure = binding.ProgramStruct()
-    structure.code = ctypes.cast(code.ctypes.data, type(structure.code))
-    structure.n_instructions, structure.n_constants, structure.n_registers = len(code), len(constants), n_registers
-    structure.constants = ctypes.cast(constants.ctypes.data, type(structure.constants))
+    hits = None if hits is None else np.ascontiguousarray(hits, np.int32)
+    structure = _Structure(code.ctypes.data, len(code), len(constants), constants.ctypes.data, n_registers)
     emission, transmittance = (np.zeros((len(points), 3), np.float32) for _ in range(2))
     message = ctypes.create_string_buffer(256)
-    pointer = lambda a: ctypes.c_void_p(a.ctypes.data)  # noqa: E731
     function = binding.library().opal_test_run_program
     function.restype = ctypes.c_int32
     status = function(
-        None,
+        ctypes.c_void_p(scene),
         ctypes.byref(structure),
         ctypes.c_int64(len(points)),
-        pointer(points),
-        None,
-        ctypes.c_float(1.0),
-        pointer(emission),
-        pointer(transmittance),
+        _address(points),
+        _address(hits),
+        ctypes.c_float(ray_length),
+        _address(emission),
+        _address(transmittance),
         message,
         ctypes.c_int32(256),
     )

@@ -8,7 +8,6 @@ orthographic.
 
 from __future__ import annotations
 
-import ctypes
 import importlib.util
 import sys
 import tempfile
@@ -26,6 +25,8 @@ if "opal_source" not in sys.modules:
     package.__path__ = [str(ROOT)]
     sys.modules["opal_source"] = package
 
+sys.path.insert(0, str(ROOT / "tests" / "kernels"))
+import program_under_test  # noqa: E402
 from opal_kernels import binding  # noqa: E402
 from opal_kernels.descriptions import Attribute  # noqa: E402
 from opal_kernels.scene import Scene  # noqa: E402
@@ -122,18 +123,18 @@ def stage(material) -> bpy.types.Object:
     scene.collection.objects.link(camera)
     scene.camera = camera
     scene.world = None
+    scene.render.resolution_x = scene.render.resolution_y = SIZE
+    scene.render.resolution_percentage = 100
     return ball
 
 
-def cycles_image(size: int = SIZE) -> np.ndarray:
-    """The scene by Cycles, one sample in the middle of each pixel: (size, size, 3), rows from the bottom up."""
+def cycles_image() -> np.ndarray:
+    """The scene by Cycles, one sample in the middle of each pixel: (SIZE, SIZE, 3), rows from the bottom up."""
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.cycles.device, scene.cycles.samples = "CPU", 1
     scene.cycles.use_adaptive_sampling = scene.cycles.use_denoising = False
     scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BOX", 0.01
-    scene.render.resolution_x = scene.render.resolution_y = size
-    scene.render.resolution_percentage = 100
     scene.render.film_transparent = False
     settings = scene.render.image_settings
     if hasattr(settings, "media_type"):
@@ -144,39 +145,16 @@ def cycles_image(size: int = SIZE) -> np.ndarray:
         bpy.ops.render.render(write_still=True)
         image = bpy.data.images.load(scene.render.filepath)
         image.colorspace_settings.name = "Non-Color"
-        values = np.empty(size * size * 4, np.float32)
+        values = np.empty(SIZE * SIZE * 4, np.float32)
         image.pixels.foreach_get(values)
         bpy.data.images.remove(image)
-    return values.reshape(size, size, 4)[:, :, :3]
+    return values.reshape(SIZE, SIZE, 4)[:, :, :3]
 
 
 def run_program(scene, compiled, points, hits=None, ray_length=1.0):
     """Emission of a compiled program at points: (n, 3)."""
-    n = len(points)
-    emission = np.zeros((n, 3), np.float32)
-    keep: list = []
-    structure = binding.program_struct(compiled, keep)
-    points = np.ascontiguousarray(points, np.float32)
-    hits = None if hits is None else np.ascontiguousarray(hits, np.int32)
-    message = ctypes.create_string_buffer(256)
-    function = binding.library().opal_test_run_program
-    function.restype = ctypes.c_int32
-    float_p, int_p = ctypes.POINTER(ctypes.c_float), ctypes.POINTER(ctypes.c_int32)
-    status = function(
-        ctypes.c_void_p(scene.handle if scene is not None else None),
-        ctypes.byref(structure),
-        ctypes.c_int64(n),
-        points.ctypes.data_as(float_p),
-        hits.ctypes.data_as(int_p) if hits is not None else None,
-        ctypes.c_float(ray_length),
-        emission.ctypes.data_as(float_p),
-        None,
-        message,
-        ctypes.c_int32(256),
-    )
-    if status:
-        raise ValueError(message.value.decode())
-    return emission
+    handle = scene.handle if scene is not None else None
+    return program_under_test.run(compiled.code, compiled.constants, compiled.n_registers, points, handle, hits, ray_length)[0]
 
 
 def opal_images(ball, material, size: int = SIZE):
