@@ -58,7 +58,7 @@ class _FinalRender:
         self.passes: list[RenderPass] = [] if engine.is_preview else wanted(depsgraph.view_layer)
         self.denoise = self.scene.opal.denoise and not engine.is_preview
         self.settings = self._settings()
-        self.last_shown = -np.inf
+        self.last_shown = self.last_stage = -np.inf
 
     def _settings(self) -> RenderSettings:
         kept: list[Pass] = [row.source for row in self.passes]
@@ -91,7 +91,9 @@ class _FinalRender:
             )
 
     def _stage(self, text: str) -> None:
-        self.engine.update_stats("", text)
+        if (now := time.monotonic()) - self.last_stage > 0.1:
+            self.last_stage = now
+            self.engine.update_stats("", text)
         if self.engine.test_break():
             raise Stopped
 
