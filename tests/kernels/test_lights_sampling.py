@@ -232,3 +232,24 @@ def test_sky_sun_and_lamps_together_are_the_sum_of_each():
     with scene_with(*(light for lamps, _ in parts for light in lamps), world=parts[2][1]) as scene:
         together, error = irradiance(scene, (0, 0, 0), UP, n=300_000)
     assert together == pytest.approx(alone, rel=5e-3, abs=4 * error.max())
+
+
+def test_more_suns_than_are_weighed_one_by_one():
+    rng = np.random.default_rng(2)
+    suns = [
+        lamp(LightType.SUN, direction=(*rng.uniform(-1, 1, 2), -1), power=rng.uniform(0.5, 2), radius=rng.choice([0, 0.2]))
+        for _ in range(13)
+    ]
+    alone = np.zeros(3)
+    for sun in suns:
+        with scene_with(sun) as scene:
+            alone += irradiance(scene, (0, 0, 0), UP, n=1000)[0]
+    with scene_with(*suns) as scene:
+        together, error = irradiance(scene, (0, 0, 0), UP, n=100_000)
+        where = receiver((0, 0, 0), UP)
+        s = sample_light(scene, where, numbers(2000, 3))
+        lit = (s["pdf"] > 0) & (s["dirac"] == 0)
+        pdf = light_pdf(scene, where, s["source"][lit], s["direction"][lit], s["distance"][lit])
+    assert together == pytest.approx(alone, rel=3e-3, abs=4 * error.max())
+    assert pdf == pytest.approx(s["pdf"][lit], rel=1e-3)
+    assert len(np.unique(s["source"][:, 1])) == len(suns)
