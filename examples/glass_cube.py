@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A cube of glass before a pink ball: the part of the ball that is seen through the cube stands beside itself.
 
-A plate with parallel faces moves what is behind it by d·sin(i − r)/cos r without turning it. Through the side faces nothing is seen at
-all, since light that enters the front of a cube of n = 1.5 is totally reflected there.
+A plate with parallel faces moves what is behind it by d·sin(i − r)/cos r without turning it. Light that enters one face of a cube of
+n > √2 cannot leave by the face beside it, where it is totally reflected: those faces are mirrors from inside.
 """
 
 import math
