@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from . import engine, media_panels, panels, properties, report
+from . import blender_panels, engine, material_panels, media_panels, panels, properties, report
 
-_MODULES = (properties, engine, panels, media_panels)
+_MODULES = (properties, engine, panels, material_panels, media_panels, blender_panels)
 
 
 def register() -> None:

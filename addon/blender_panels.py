@@ -54,4 +54,5 @@ def register() -> None:
 
 def unregister() -> None:
     for panel in _panels():
-        panel.COMPAT_ENGINES.discard(_ENGINE)
+        if panel.COMPAT_ENGINES != {_ENGINE}:  # Opal's own keep it
+            panel.COMPAT_ENGINES.discard(_ENGINE)

@@ -3,15 +3,14 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import bpy
 
-from . import blender_panels, presets, report
+from . import report
 
 
-class _OpalPanel(bpy.types.Panel):
+class OpalPanel(bpy.types.Panel):
     """Shown while Opal is the engine."""
 
     bl_space_type = "PROPERTIES"
@@ -23,7 +22,7 @@ class _OpalPanel(bpy.types.Panel):
         return context.engine in cls.COMPAT_ENGINES
 
 
-class _RenderPanel(_OpalPanel):
+class _RenderPanel(OpalPanel):
     bl_context = "render"
 
     def draw(self, context: Any) -> None:
@@ -172,7 +171,7 @@ class OPAL_RENDER_PT_performance(_RenderPanel):
         sub.prop(render, "threads")
 
 
-class OPAL_VIEWLAYER_PT_passes(_OpalPanel):
+class OPAL_VIEWLAYER_PT_passes(OpalPanel):
     bl_label = "Passes"
     bl_context = "view_layer"
 
@@ -194,108 +193,7 @@ class OPAL_VIEWLAYER_PT_passes(_OpalPanel):
         column.prop(layer.opal, "use_pass_medium")
 
 
-class _MaterialPanel(_OpalPanel):
-    bl_context = "material"
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        material = context.material
-        return super().poll(context) and material is not None and not material.grease_pencil
-
-
-class OPAL_MATERIAL_PT_kind(_MaterialPanel):
-    bl_label = "Opal"
-
-    def draw(self, context: Any) -> None:
-        self.layout.prop(context.material.opal, "kind", expand=True)
-
-
-class OPAL_MATERIAL_PT_surface(_MaterialPanel):
-    bl_label = "Surface"
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        return super().poll(context) and context.material.opal.kind == "SURFACE"
-
-    def draw(self, context: Any) -> None:
-        layout, material = self.layout, context.material
-        layout.use_property_split = True
-        tree = material.node_tree
-        output = tree.get_output_node("ALL") if tree is not None else None
-        if output is None:
-            layout.prop(material, "diffuse_color")
-        else:
-            layout.template_node_view(tree, output, output.inputs["Surface"])
-
-
-class OPAL_MATERIAL_PT_gem(_MaterialPanel):
-    bl_label = "Gem"
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        return super().poll(context) and context.material.opal.kind == "GEM"
-
-    def draw(self, context: Any) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        gem = context.material.opal.gem
-        layout.prop(gem, "species")
-        _draw_read_out(layout, gem)
-        layout.prop(gem, "roughness")
-        layout.prop(gem, "fresnel")
-        layout.prop(gem, "priority")
-
-
-class OPAL_MATERIAL_PT_gem_dispersion(_MaterialPanel):
-    bl_label = "Dispersion"
-    bl_parent_id = "OPAL_MATERIAL_PT_gem"
-
-    def draw(self, context: Any) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        gem = context.material.opal.gem
-        if gem.refusal:
-            layout.label(text=gem.refusal, icon="ERROR")
-        layout.prop(gem, "dispersion", text="Formula")
-        if gem.dispersion == "CAUCHY":
-            column = layout.column(align=True)
-            column.prop(gem, "cauchy_b")
-            column.prop(gem, "cauchy_c", text="C (µm²)")
-        else:
-            layout.prop(gem, "sellmeier_b")
-            layout.prop(gem, "sellmeier_c", text="C (µm²)")
-
-
-class OPAL_MATERIAL_PT_gem_absorption(_MaterialPanel):
-    bl_label = "Absorption"
-    bl_parent_id = "OPAL_MATERIAL_PT_gem"
-
-    def draw(self, context: Any) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        gem = context.material.opal.gem
-        layout.prop(gem, "absorption_color", text="Color")
-        layout.prop(gem, "absorption_depth", text="Depth")
-
-
-def _draw_read_out(layout: Any, gem: Any) -> None:
-    numbers = presets.read_out(gem)
-    if numbers is None:
-        return
-    box = layout.box().column(align=True)
-    rows = (
-        ("Index at 589.3 nm", f"{numbers.n_d:.4f}"),
-        ("Abbe number", f"{numbers.abbe:.1f}" if math.isfinite(numbers.abbe) else "no dispersion"),
-        ("Dispersion B to G", f"{numbers.b_to_g:.4f}"),
-        ("Critical angle", f"{math.degrees(numbers.critical_angle):.2f}°"),
-    )
-    for name, value in rows:
-        split = box.split(factor=0.6)
-        split.label(text=name)
-        split.label(text=value)
-
-
-class OPAL_LIGHT_PT_spread(_OpalPanel):
+class OPAL_LIGHT_PT_spread(OpalPanel):
     bl_label = "Beam Shape"
     bl_context = "data"
 
@@ -308,7 +206,7 @@ class OPAL_LIGHT_PT_spread(_OpalPanel):
         self.layout.prop(context.light, "spread")
 
 
-class OPAL_LIGHT_PT_nodes(_OpalPanel):
+class OPAL_LIGHT_PT_nodes(OpalPanel):
     bl_label = "Nodes"
     bl_context = "data"
     bl_options = {"DEFAULT_CLOSED"}
@@ -325,7 +223,7 @@ class OPAL_LIGHT_PT_nodes(_OpalPanel):
             self.layout.template_node_view(light.node_tree, output, output.inputs["Surface"])
 
 
-class OPAL_OBJECT_PT_ray_visibility(_OpalPanel):
+class OPAL_OBJECT_PT_ray_visibility(OpalPanel):
     bl_label = "Ray Visibility"
     bl_context = "object"
     bl_options = {"DEFAULT_CLOSED"}
@@ -358,11 +256,6 @@ CLASSES = (
     OPAL_RENDER_PT_motion_blur,
     OPAL_RENDER_PT_performance,
     OPAL_VIEWLAYER_PT_passes,
-    OPAL_MATERIAL_PT_kind,
-    OPAL_MATERIAL_PT_surface,
-    OPAL_MATERIAL_PT_gem,
-    OPAL_MATERIAL_PT_gem_dispersion,
-    OPAL_MATERIAL_PT_gem_absorption,
     OPAL_LIGHT_PT_spread,
     OPAL_LIGHT_PT_nodes,
     OPAL_OBJECT_PT_ray_visibility,
@@ -372,10 +265,8 @@ CLASSES = (
 def register() -> None:
     for cls in CLASSES:
         bpy.utils.register_class(cls)
-    blender_panels.register()
 
 
 def unregister() -> None:
-    blender_panels.unregister()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

@@ -150,3 +150,15 @@ def test_species_are_saved_by_name_not_by_their_place_in_the_table(gem):
     assert len(set(numbers)) == len(numbers)
     gem.species = "EMERALD"
     assert gem.get("species", presets.species_number("EMERALD")) == presets.species_number("EMERALD")
+
+
+def test_blenders_own_panels_join_and_opals_survive_a_second_enabling():
+    blender_panels, panels = stage.addon("blender_panels"), stage.addon("panels")
+    assert "OPAL" in bpy.types.DATA_PT_camera_dof.COMPAT_ENGINES
+    assert "OPAL" not in bpy.types.RENDER_PT_freestyle.COMPAT_ENGINES
+    blender_panels.unregister()
+    try:
+        assert "OPAL" not in bpy.types.DATA_PT_camera_dof.COMPAT_ENGINES
+        assert panels.OpalPanel.COMPAT_ENGINES == {"OPAL"}
+    finally:
+        blender_panels.register()
