@@ -7,7 +7,8 @@ from ctypes import c_int64
 import numpy as np
 import pytest
 from light_probe import _call, _floats, _input, looking, numbers
-from opal_kernels import binding, camera
+from opal_kernels import camera
+from opal_kernels.binding.structures import CameraStruct
 from opal_kernels.descriptions import Camera, CameraType
 
 PINHOLE = Camera(window=(-0.4, 0.4, -0.3, 0.3), clip_start=0.1, clip_end=100.0)
@@ -46,7 +47,7 @@ ALL = {
 
 
 def struct_of(description):
-    struct = binding.CameraStruct()
+    struct = CameraStruct()
     for name in (
         "type",
         "blades",
