@@ -72,7 +72,7 @@ test: zip
 	@$(PYTHON) -m pytest $(or $(ARGS),tests)
 
 bench: zip
-	@$(PYTHON) benchmarks/run.py $(ARGS)
+	@$(PYTHON) benchmarks/render.py $(ARGS)
 
 # ---- Care ----
 

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The error of a picture, and the time at which it would be small enough.
+
+Relative MSE is mean((I - R)² / (R² + 0.1 mean(R)²)) over pixels and channels, without the worst 0.1 % of pixels; R is a converged
+reference of the renderer's own, so that it is noise which is measured and not a difference of opinion.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def relative_mse(image: np.ndarray, reference: np.ndarray, only: np.ndarray | None = None) -> float:
+    """Relative MSE of a picture; both (height, width, 3), ``only`` an optional (height, width) mask of the pixels that count."""
+    squares = ((image - reference) ** 2 / (reference**2 + 0.1 * reference.mean() ** 2)).mean(axis=-1)
+    squares = np.sort(squares[only] if only is not None else squares.ravel())
+    return float(squares[: max(1, int(len(squares) * 0.999))].mean())
+
+
+def bright(reference: np.ndarray) -> np.ndarray:
+    """The caustic's pixels: brighter than 5 % of the 99.5 percentile."""
+    luminance = reference.mean(axis=-1)
+    return luminance > 0.05 * np.quantile(luminance, 0.995)
+
+
+def time_to(error: float, seconds: np.ndarray, errors: np.ndarray) -> float:
+    """Seconds at which the error is reached: between two snapshots by a power law, beyond them as an unbiased mean falls, by 1/t."""
+    t, e = np.asarray(seconds, float), np.asarray(errors, float)
+    below = np.flatnonzero(e <= error)
+    if len(below) == 0:
+        return float(t[-1] * e[-1] / error)
+    i = below[0]
+    if i == 0:
+        return float(t[0] * e[0] / error)
+    part = np.log(e[i - 1] / error) / np.log(e[i - 1] / e[i])
+    return float(t[i - 1] * (t[i] / t[i - 1]) ** part)

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Opal's measurements: ratios taken in one run on one machine, each with the error reached.
+
+    make bench                                 all that needs no peers: cycles, speed, start
+    make bench ARGS="caustics"                 beside LuxCore and Mitsuba: pip install -r benchmarks/requirements.txt first
+    make bench ARGS="cycles --repeats 5 --json build/bench.json"
+
+Sub-commands: `cycles` (time to Cycles' error at 64 samples), `caustics` (prism and brilliant, time to relative MSE 0.01), `speed` (rays, photons,
+building), `start` (import, enable). Run it on a machine that does nothing else.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent
+
+
+def _inside_blender(options) -> list[dict]:
+    """`cycles` needs the installed extension: this script again, inside `tools/with_extension.py`."""
+    out = ROOT / "build" / "bench-cycles.json"
+    command = [sys.executable, str(ROOT / "tools" / "with_extension.py"), str(HERE / "render.py"), "cycles", "--inside", "--json", str(out)]
+    subprocess.run([*command, "--repeats", str(options.repeats), "--reference-samples", str(options.reference_samples)], check=True)
+    return json.loads(out.read_text())["cycles"]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", nargs="*", help="cycles, caustics, speed, start; all but caustics when left out")
+    parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--seconds", type=float, default=30.0, help="of each run of caustics")
+    parser.add_argument("--reference-seconds", type=float, default=300.0, help="of the references of caustics, made once")
+    parser.add_argument("--reference-samples", type=int, default=4096, help="of the references of cycles")
+    parser.add_argument("--scenes", nargs="+", default=["prism", "brilliant"], help="of caustics")
+    parser.add_argument("--json", type=Path, help="also write the records there")
+    parser.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    found = {}
+    for what in options.what or ["cycles", "speed", "start"]:
+        if what == "cycles":
+            if options.inside:
+                import against_cycles
+
+                found[what] = [*against_cycles.measure(options.repeats, options.reference_samples), against_cycles.translation()]
+                against_cycles.report(found[what])
+            else:
+                found[what] = _inside_blender(options)
+        elif what == "caustics":
+            import caustics
+
+            found[what] = caustics.measure(options.scenes, options.seconds, options.repeats, options.reference_seconds)
+            caustics.report(found[what])
+        elif what == "speed":
+            import rays
+
+            found[what] = rays.measure(options.repeats)
+            rays.report(found[what])
+        elif what == "start":
+            import startup
+
+            found[what] = startup.measure(max(5, options.repeats))
+            startup.report(found[what])
+        else:
+            parser.error(f"there is no {what}: cycles, caustics, speed or start")
+    if options.json:
+        options.json.parent.mkdir(parents=True, exist_ok=True)
+        options.json.write_text(json.dumps(found, indent=1))
+
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(HERE))
+    main()
