@@ -188,3 +188,19 @@ def test_garbage_is_refused_or_runs():
         assert np.isfinite(emission).all()
         assert np.isfinite(transmittance).all()
     assert ran > 30, "too few random programs were good enough to run"
+
+
+@pytest.mark.parametrize("coat", [0.0, 0.5])
+def test_a_principled_surface_emits_what_alpha_and_coat_leave(coat):
+    program = Program()
+    plain = program.constant(1.0, 1.0, 1.0, 0.0)
+    emission = program.constant(0.5, 1.0, 0.25, 2.0)
+    layers = program.constant(0.0, 0.03, 1.5, 0.5)
+    body = program.constant(0.0, 0.5, 1.5, 0.5)
+    over = program.constant(1.0, 1.0, 1.0, coat)
+    zero = program.constant(0.0)
+    program.op("PRINCIPLED", -1, plain, -1, -1, -1, plain, over, plain, emission, body, zero, layers, zero, outputs=0)
+    seen = run(*program.arrays())[0][0]
+    assert seen / seen[1] == pytest.approx([0.5, 1.0, 0.25])
+    # Half of it by alpha; a coat seen straight on (0.04 reflected) takes 2 % at half weight.
+    assert seen[1] == pytest.approx(1.0 - 0.04 * coat, rel=0.01)

@@ -144,7 +144,9 @@ bool program_from_desc(const opal_program &desc, int n_images, Program &out, con
 
   p.constant_emission = true;
   for (const opal_instruction &c : p.emission_code)
-    if (signature(c.op).of_the_point || c.op == OPAL_OP_PRINCIPLED) p.constant_emission = false;
+    p.emission_of_layers |= c.op == OPAL_OP_PRINCIPLED && !(is_constant(p, c.in[6], 3, 0) && is_constant(p, c.in[7], 3, 0));
+  for (const opal_instruction &c : p.emission_code)
+    if (signature(c.op).of_the_point || p.emission_of_layers) p.constant_emission = false;
   p.emission = estimate_emission(p);
   out = std::move(p);
   return true;

@@ -251,6 +251,15 @@ void lobe(Run &run, const opal_instruction &c) {
     if (c.op == OPAL_OP_PRINCIPLED) run.sum += weight * (1 - saturate(finite(r[c.in[9]].w, 1)));
     return;
   }
+  if (run.purpose == Purpose::Emission && c.op == OPAL_OP_EMISSION) {
+    run.sum += weight * color(1) * value(2);
+    return;
+  }
+  if (run.purpose == Purpose::Emission && c.op == OPAL_OP_PRINCIPLED && r[c.in[6]].w == 0 && r[c.in[7]].w == 0) {
+    // Neither coat nor sheen above: alpha alone weakens it.
+    run.sum += weight * finite(r.xyz(c.in[8])) * (finite(r[c.in[8]].w) * saturate(finite(r[c.in[9]].w, 1)));
+    return;
+  }
   if (!run.set) return;
   ClosureSet &set = *run.set;
   const ShadingPoint &sp = run.sp;
@@ -403,9 +412,11 @@ void clear(ClosureSet &set) {
 }
 
 Vec3 emitted(const Scene *scene, const Program &program, const ShadingPoint &sp) {
-  ClosureSet set;
-  run_code(scene, program, program.emission_code, sp, Purpose::Emission, &set);
-  return finite(set.emission);
+  const auto run = [&](ClosureSet *set) { return run_code(scene, program, program.emission_code, sp, Purpose::Emission, set); };
+  if (!program.emission_of_layers) return finite(run(nullptr));
+  ClosureSet set;  // large: only where layers above tint the emission
+  const Vec3 plain = run(&set);
+  return finite(plain + set.emission);
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ struct Program {
   int n_constants = 0, n_registers = 0;
   bool constant_emission = true;  // emission is the same everywhere
   Vec3 emission;                  // that value, or an estimate
+  bool emission_of_layers = false;  // a Principled BSDF emits, under its coat and sheen
 };
 
 // Copies and checks a program: operations known, registers in range, images existing. On failure `error` says which
