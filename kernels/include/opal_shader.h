@@ -19,6 +19,8 @@
 #define OPAL_MAX_CONSTANTS 1048576
 #define OPAL_MAX_INSTRUCTIONS 65536
 
+/* clang-format off: tables read better than one item a line */
+
 typedef enum opal_op {
   /* ---- Numbers and vectors ---- */
   OPAL_OP_GREY = 0,           /* value; mode OPAL_GREY_* -> the number that a colour or vector becomes */
@@ -161,5 +163,7 @@ enum {
   OPAL_GRADIENT_LINEAR, OPAL_GRADIENT_QUADRATIC, OPAL_GRADIENT_EASING, OPAL_GRADIENT_DIAGONAL, OPAL_GRADIENT_SPHERICAL,
   OPAL_GRADIENT_QUADRATIC_SPHERE, OPAL_GRADIENT_RADIAL, OPAL_GRADIENT_COUNT
 };
+
+/* clang-format on */
 
 #endif
