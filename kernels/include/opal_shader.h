@@ -19,7 +19,8 @@
 #define OPAL_MAX_CONSTANTS 1048576
 #define OPAL_MAX_INSTRUCTIONS 65536
 
-/* clang-format off: tables read better than one item a line */
+/* Tables read better than one item a line. */
+/* clang-format off */
 
 typedef enum opal_op {
   /* ---- Numbers and vectors ---- */

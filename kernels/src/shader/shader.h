@@ -23,8 +23,8 @@ struct Program {
   std::vector<Code> heights;     // of the Bump operations, by number (their last input)
   std::vector<float> constants;  // 4 floats a register
   int n_constants = 0, n_registers = 0;
-  bool constant_emission = true;  // emission is the same everywhere
-  Vec3 emission;                  // that value, or an estimate
+  bool constant_emission = true;    // emission is the same everywhere
+  Vec3 emission;                    // that value, or an estimate
   bool emission_of_layers = false;  // a Principled BSDF emits, under its coat and sheen
 };
 
