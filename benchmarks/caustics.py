@@ -7,7 +7,6 @@ only. For the prism it is the caustic's pixels alone, so that black floor does n
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -26,11 +25,9 @@ def run(renderer: str, method: str, scene: str, seed: int, times: list[float], o
     """Seconds (n,) and pictures (n, height, width, 3) of one run in a process of its own."""
     output.parent.mkdir(exist_ok=True)
     command = [sys.executable, str(HERE / "caustic_run.py"), renderer, method, scene, str(seed), str(output), *map(str, times)]
-    done = subprocess.run(
-        command, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-    )
+    done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
-        raise RuntimeError(f"{renderer} {method} on {scene} failed: {done.stderr.strip().splitlines()[-1:]}")
+        raise RuntimeError(f"{renderer} {method} on {scene} failed ({done.returncode}): {done.stderr.strip().splitlines()[-1:]}")
     with np.load(output) as file:
         return file["seconds"], file["images"].astype(np.float64)
 
