@@ -33,11 +33,14 @@ def _functions_of_opal(functions) -> list[str]:
 
 
 def snapshot() -> dict[str, list[str]]:
-    """Everything registered with Blender, by name."""
+    """Everything registered with Blender, by name (an engine is not among bpy.types)."""
     types = _types()
     rna = {name: kind.bl_rna for name, kind in types.items() if hasattr(kind, "bl_rna")}
     return {
         "classes": sorted(types),
+        "engines": sorted(
+            getattr(e, "bl_idname", "") for e in bpy.types.RenderEngine.__subclasses__() if getattr(e, "is_registered", False)
+        ),
         "properties": sorted(f"{name}.{p}" for name, r in rna.items() for p in r.properties.keys()),
         "handlers": sorted(
             f for n in dir(bpy.app.handlers) if isinstance(h := getattr(bpy.app.handlers, n), list) for f in _functions_of_opal(h)

@@ -17,7 +17,7 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 PACKAGE = "bl_ext.user_default.opal"
 MARK = "RESULT "
-REGISTERED = ("classes", "properties", "handlers", "menus", "panels", "addons")
+REGISTERED = ("classes", "engines", "properties", "handlers", "menus", "panels", "addons")
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +56,7 @@ def test_installing_alone_registers_nothing(cycle):
 
 
 def test_enabling_brings_engine_properties_and_menu_entries(cycle):
-    assert "OPAL" in _added(cycle, "enabled", "classes"), "Blender lists an engine by its identifier"
+    assert _added(cycle, "enabled", "engines") == ["OPAL"]
     assert {"Scene.opal", "Material.opal", "ViewLayer.opal"} <= set(_added(cycle, "enabled", "properties"))
     assert len(_added(cycle, "enabled", "menus")) >= 2
     assert "RENDER_PT_color_management" in _added(cycle, "enabled", "panels")
