@@ -256,9 +256,10 @@ def test_ball_under_a_sky(opal, render, kind):
 
 
 def test_ball_between_studio_lights(opal, render):
-    """A tenth of a percent of studio's sky brings seven tenths of its light, which only importance sampling finds."""
+    """A tenth of a percent of studio's sky brings seven tenths of its light, which only importance sampling finds.
+    Few bright pixels carry the noise, so that its own estimate is rough."""
     ball_under_sky("studio", **BALLS["plastic"])
-    check(render)
+    check(render, unexplained_tolerance=0.05)
 
 
 def test_textures(opal, render):
