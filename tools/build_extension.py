@@ -6,6 +6,7 @@ Prints the path of the zip last.
 """
 
 import importlib.util
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -31,6 +32,11 @@ def main() -> None:
     if missing:
         there = ", ".join(path.name for path in (ROOT / "wheels").glob("*.whl")) or "nothing"
         raise SystemExit(f"blender_manifest.toml names {', '.join(missing)}, but wheels/ holds {there}.")
+
+    # The manifest names whole folders, and in Blender's patterns what is named wins over what is excluded inside it.
+    for folder in ("addon", "operators"):
+        for cache in list((ROOT / folder).rglob("__pycache__")):
+            shutil.rmtree(cache, ignore_errors=True)
 
     archive = output / f"{manifest['id']}-{manifest['version']}.zip"
     archive.unlink(missing_ok=True)

@@ -7,6 +7,7 @@ import json
 import os
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -43,6 +44,14 @@ def cycle(tmp_path_factory):
 
 def _added(cycle, step, what):
     return sorted(set(cycle[step][what]) - set(cycle["before"][what]))
+
+
+def test_the_zip_holds_no_compiled_python():
+    zips = sorted((ROOT / "dist").glob("opal-*.zip"))
+    if not zips:
+        pytest.skip("dist/ holds no zip: run `make test`")
+    names = zipfile.ZipFile(zips[-1]).namelist()
+    assert "__init__.py" in names and [name for name in names if name.endswith(".pyc")] == []
 
 
 def test_the_profile_was_empty(cycle):
