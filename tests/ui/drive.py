@@ -123,7 +123,7 @@ def in_a_window():
     RESULT["left_behind"] = [name for name in dir(bpy.types) if name.startswith(("OPAL", "Opal"))]
     engines = [e for e in bpy.types.RenderEngine.__subclasses__() if getattr(e, "bl_idname", "") == "OPAL"]
     RESULT["left_behind"] += ["the engine" for e in engines if getattr(e, "is_registered", False)]
-    RESULT["left_behind"] += ["Scene.opal"] if hasattr(bpy.types.Scene, "opal") else []
+    RESULT["left_behind"] += ["Scene.opal"] if "opal" in bpy.types.Scene.bl_rna.properties else []
     RESULT["engine_after"] = bpy.context.scene.render.engine
     _screenshot("disabled")
 
