@@ -18,9 +18,9 @@
 #include <stdint.h>
 
 #if defined(_WIN32)
-#  define OPAL_EXPORT __declspec(dllexport)
+#define OPAL_EXPORT __declspec(dllexport)
 #else
-#  define OPAL_EXPORT __attribute__((visibility("default")))
+#define OPAL_EXPORT __attribute__((visibility("default")))
 #endif
 
 #ifdef __cplusplus
@@ -87,12 +87,12 @@ OPAL_EXPORT int32_t opal_scene_add_spectrum(opal_scene *scene, const float *valu
 enum { OPAL_PHASE_ISOTROPIC = 0, OPAL_PHASE_HENYEY_GREENSTEIN = 1, OPAL_PHASE_RAYLEIGH = 2, OPAL_PHASE_TABLE = 3 };
 
 typedef struct opal_phase_desc {
-  int32_t kind;              /* OPAL_PHASE_* */
-  float anisotropy;          /* Henyey-Greenstein: mean cosine, -1..1 */
+  int32_t kind;     /* OPAL_PHASE_* */
+  float anisotropy; /* Henyey-Greenstein: mean cosine, -1..1 */
   int32_t n_wavelengths, n_angles;
-  const float *wavelengths;  /* table: nm, ascending */
-  const float *angles;       /* table: radians between propagation directions, from 0 to pi, ascending */
-  const float *values;       /* table: n_wavelengths x n_angles, 1/sr; each row is normalised */
+  const float *wavelengths; /* table: nm, ascending */
+  const float *angles;      /* table: radians between propagation directions, from 0 to pi, ascending */
+  const float *values;      /* table: n_wavelengths x n_angles, 1/sr; each row is normalised */
 } opal_phase_desc;
 
 OPAL_EXPORT int32_t opal_scene_add_phase(opal_scene *scene, const opal_phase_desc *phase);
@@ -146,10 +146,10 @@ typedef struct opal_material_desc {
 } opal_material_desc;
 
 enum {
-  OPAL_MATERIAL_CASTER = 1,   /* may make caustics: has a sharp enough specular lobe */
-  OPAL_MATERIAL_EMISSIVE = 2, /* its faces are light sources worth sampling */
+  OPAL_MATERIAL_CASTER = 1,             /* may make caustics: has a sharp enough specular lobe */
+  OPAL_MATERIAL_EMISSIVE = 2,           /* its faces are light sources worth sampling */
   OPAL_MATERIAL_TRANSPARENT_SHADOW = 4, /* shadow rays must run the program (alpha, Transparent BSDF) */
-  OPAL_MATERIAL_NO_SURFACE = 8 /* bounds a medium and nothing else: every ray goes straight through */
+  OPAL_MATERIAL_NO_SURFACE = 8          /* bounds a medium and nothing else: every ray goes straight through */
 };
 
 OPAL_EXPORT int32_t opal_scene_add_material(opal_scene *scene, const opal_material_desc *material);
@@ -202,49 +202,49 @@ typedef struct opal_instances_desc {
   const float *transforms_end; /* at shutter close, or NULL */
   const int32_t *materials;    /* material of each slot; -1: the default grey */
   int32_t n_materials;
-  uint32_t visibility;         /* OPAL_RAY_* bits */
-  const float *object_info;    /* count x 8: random 0..1, object index, material-independent colour rgba, 2 unused; or NULL */
-  int32_t holdout;             /* non-zero: cuts alpha */
-  int32_t light_group;         /* receiver set for light linking: bit index tested against lights, -1: every light */
+  uint32_t visibility;      /* OPAL_RAY_* bits */
+  const float *object_info; /* count x 8: random 0..1, object index, material-independent colour rgba, 2 unused; or NULL */
+  int32_t holdout;          /* non-zero: cuts alpha */
+  int32_t light_group;      /* receiver set for light linking: bit index tested against lights, -1: every light */
 } opal_instances_desc;
 
 /* Returns the index of the first instance. */
 OPAL_EXPORT int32_t opal_scene_add_instances(opal_scene *scene, const opal_instances_desc *instances);
-OPAL_EXPORT int32_t opal_scene_set_transforms(opal_scene *scene, int32_t first_instance, int32_t count,
-                                              const float *transforms, const float *transforms_end);
+OPAL_EXPORT int32_t opal_scene_set_transforms(opal_scene *scene, int32_t first_instance, int32_t count, const float *transforms,
+                                              const float *transforms_end);
 
 /* ---- Lights ---- */
 
 enum { OPAL_LIGHT_POINT = 0, OPAL_LIGHT_SPOT = 1, OPAL_LIGHT_SUN = 2, OPAL_LIGHT_RECTANGLE = 3, OPAL_LIGHT_ELLIPSE = 4 };
 
 typedef struct opal_light_desc {
-  int32_t type;        /* OPAL_LIGHT_* */
-  int32_t spectrum;    /* relative spectral power replacing D65 x colour, or -1 */
-  float transform[12]; /* looks along its local -Z */
-  float color[3];      /* linear Rec.709: tint x temperature x strength factors, without the power */
-  float power;         /* W as in Blender (sun: irradiance, W/m2); exposure already applied */
-  float radius;        /* point, spot: of the sphere; sun: half of the angle (radians) */
-  float spot_angle;    /* full cone angle */
-  float spot_blend;    /* 0..1 */
+  int32_t type;         /* OPAL_LIGHT_* */
+  int32_t spectrum;     /* relative spectral power replacing D65 x colour, or -1 */
+  float transform[12];  /* looks along its local -Z */
+  float color[3];       /* linear Rec.709: tint x temperature x strength factors, without the power */
+  float power;          /* W as in Blender (sun: irradiance, W/m2); exposure already applied */
+  float radius;         /* point, spot: of the sphere; sun: half of the angle (radians) */
+  float spot_angle;     /* full cone angle */
+  float spot_blend;     /* 0..1 */
   float size_u, size_v; /* area: edge lengths (rectangle) or axes (ellipse) along local X and Y */
-  float spread;        /* area: full angle, pi is Lambertian */
-  uint32_t visibility; /* OPAL_RAY_* bits that can see it */
+  float spread;         /* area: full angle, pi is Lambertian */
+  uint32_t visibility;  /* OPAL_RAY_* bits that can see it */
   int32_t cast_shadow;
-  int32_t normalize;   /* power does not depend on size */
-  int32_t caustics;    /* non-zero: may send caustic photons */
+  int32_t normalize;    /* power does not depend on size */
+  int32_t caustics;     /* non-zero: may send caustic photons */
   int32_t soft_falloff; /* point, spot: a disc that faces each point it lights (Blender's default) instead of a sphere */
   int32_t reserved;
-  uint64_t receivers;  /* light linking: bit i lights receiver set i */
+  uint64_t receivers; /* light linking: bit i lights receiver set i */
 } opal_light_desc;
 
 OPAL_EXPORT int32_t opal_scene_add_light(opal_scene *scene, const opal_light_desc *light);
 OPAL_EXPORT int32_t opal_scene_clear_lights(opal_scene *scene);
 
 typedef struct opal_world_desc {
-  opal_program program;  /* run with the direction as position; its emission is the radiance */
-  uint32_t visibility;   /* OPAL_RAY_* bits */
-  int32_t map_width;     /* resolution of the importance map; 0: uniform radiance */
-  int32_t caustics;      /* non-zero: sends caustic photons */
+  opal_program program; /* run with the direction as position; its emission is the radiance */
+  uint32_t visibility;  /* OPAL_RAY_* bits */
+  int32_t map_width;    /* resolution of the importance map; 0: uniform radiance */
+  int32_t caustics;     /* non-zero: sends caustic photons */
   int32_t reserved;
 } opal_world_desc;
 
@@ -262,10 +262,10 @@ typedef struct opal_camera_desc {
   float transform_end[12]; /* at shutter close */
   float window[4];         /* left, right, bottom, top of the full frame: at distance 1 (perspective) or in metres */
   float clip_start, clip_end;
-  float aperture_radius;   /* metres, 0: pinhole */
+  float aperture_radius; /* metres, 0: pinhole */
   float focus_distance;
   float blade_rotation;
-  float aperture_ratio;    /* 1: round */
+  float aperture_ratio; /* 1: round */
 } opal_camera_desc;
 
 OPAL_EXPORT int32_t opal_scene_set_camera(opal_scene *scene, const opal_camera_desc *camera);
@@ -290,27 +290,27 @@ enum { OPAL_CARRY_CAUSTICS = 0, OPAL_CARRY_INDIRECT = 1, OPAL_CARRY_ALL = 2, OPA
 enum { OPAL_FILTER_BOX = 0, OPAL_FILTER_GAUSSIAN = 1, OPAL_FILTER_BLACKMAN_HARRIS = 2 };
 
 typedef struct opal_render_settings {
-  int32_t width, height;                 /* of the full frame */
-  int32_t region[4];                     /* x0, y0, x1, y1 of the pixels rendered, y up */
+  int32_t width, height; /* of the full frame */
+  int32_t region[4];     /* x0, y0, x1, y1 of the pixels rendered, y up */
   int32_t samples_per_pass;
-  int32_t photons_per_pass;              /* emitted */
-  int32_t photons_carry;                 /* OPAL_CARRY_* */
-  int32_t gather;                        /* photons in one estimate, at most */
-  float radius;                          /* of the first pass's kernel in metres; 0: chosen from the scene */
-  float radius_shrink;                   /* alpha of Knaus & Zwicker 2011, 2/3 for surfaces */
-  int32_t max_depth;                     /* bounces; Russian roulette ends paths before */
-  int32_t transparent_depth;             /* Transparent BSDFs passed by one ray */
+  int32_t photons_per_pass;                /* emitted */
+  int32_t photons_carry;                   /* OPAL_CARRY_* */
+  int32_t gather;                          /* photons in one estimate, at most */
+  float radius;                            /* of the first pass's kernel in metres; 0: chosen from the scene */
+  float radius_shrink;                     /* alpha of Knaus & Zwicker 2011, 2/3 for surfaces */
+  int32_t max_depth;                       /* bounces; Russian roulette ends paths before */
+  int32_t transparent_depth;               /* Transparent BSDFs passed by one ray */
   float wavelength_first, wavelength_last; /* nm */
   uint32_t seed;
-  int32_t filter;                        /* OPAL_FILTER_* */
-  float filter_width;                    /* pixels */
-  float exposure;                        /* factor on the film */
+  int32_t filter;     /* OPAL_FILTER_* */
+  float filter_width; /* pixels */
+  float exposure;     /* factor on the film */
   int32_t transparent_film;
-  float clamp_direct, clamp_indirect;    /* 0: none (default) */
+  float clamp_direct, clamp_indirect; /* 0: none (default) */
   int32_t motion_blur;
-  int32_t spectral_bins;                 /* 0: none; else bins of the spectral film between the wavelengths */
-  int32_t threads;                       /* 0: as the scene */
-  uint32_t passes;                       /* bit 1 << OPAL_PASS_*: what the film keeps; Combined always */
+  int32_t spectral_bins; /* 0: none; else bins of the spectral film between the wavelengths */
+  int32_t threads;       /* 0: as the scene */
+  uint32_t passes;       /* bit 1 << OPAL_PASS_*: what the film keeps; Combined always */
 } opal_render_settings;
 
 OPAL_EXPORT opal_render *opal_render_create(opal_scene *scene, const opal_render_settings *settings);
@@ -323,18 +323,18 @@ OPAL_EXPORT void opal_render_cancel(opal_render *render);
 OPAL_EXPORT float opal_render_progress(const opal_render *render);
 
 enum {
-  OPAL_PASS_COMBINED = 0, /* RGBA, premultiplied */
-  OPAL_PASS_DEPTH = 1,    /* 1 */
-  OPAL_PASS_NORMAL = 2,   /* 3, world space */
-  OPAL_PASS_POSITION = 3, /* 3 */
-  OPAL_PASS_ALBEDO = 4,   /* 3 */
-  OPAL_PASS_EMISSION = 5, /* 3: light seen at first hand, background included */
-  OPAL_PASS_DIRECT = 6,   /* 3: one scattering event between lamp and camera */
-  OPAL_PASS_INDIRECT = 7, /* 3: more than one, caustics excluded */
-  OPAL_PASS_CAUSTICS = 8, /* 3: brought to a diffuse surface by a specular one */
-  OPAL_PASS_MEDIUM = 9,   /* 3 */
+  OPAL_PASS_COMBINED = 0,  /* RGBA, premultiplied */
+  OPAL_PASS_DEPTH = 1,     /* 1 */
+  OPAL_PASS_NORMAL = 2,    /* 3, world space */
+  OPAL_PASS_POSITION = 3,  /* 3 */
+  OPAL_PASS_ALBEDO = 4,    /* 3 */
+  OPAL_PASS_EMISSION = 5,  /* 3: light seen at first hand, background included */
+  OPAL_PASS_DIRECT = 6,    /* 3: one scattering event between lamp and camera */
+  OPAL_PASS_INDIRECT = 7,  /* 3: more than one, caustics excluded */
+  OPAL_PASS_CAUSTICS = 8,  /* 3: brought to a diffuse surface by a specular one */
+  OPAL_PASS_MEDIUM = 9,    /* 3 */
   OPAL_PASS_SPECTRAL = 10, /* spectral_bins: radiance per nm, W/(m2 sr nm) with D65-white of luminance 1 as unit */
-  OPAL_PASS_NOISE = 11,   /* 1: estimated standard error of the luminance */
+  OPAL_PASS_NOISE = 11,    /* 1: estimated standard error of the luminance */
   OPAL_PASS_COUNT = 12
 };
 

@@ -81,7 +81,8 @@ Material material_from(const Scene &scene, const opal_material_desc &desc) {
     m.gem = *desc.gem;
     const auto known = [&](int32_t s) { return s >= 0 && size_t(s) < scene.spectra.size(); };
     require(known(m.gem.index_spectrum), "The gem's index of refraction names a spectrum that does not exist");
-    require(m.gem.absorption_spectrum < 0 || known(m.gem.absorption_spectrum), "The gem's absorption names a spectrum that does not exist");
+    require(m.gem.absorption_spectrum < 0 || known(m.gem.absorption_spectrum),
+            "The gem's absorption names a spectrum that does not exist");
     require(m.gem.roughness >= 0 && m.gem.roughness <= 1, "The gem's roughness is not between 0 and 1");
     m.flags |= OPAL_MATERIAL_CASTER;
   }
@@ -202,10 +203,12 @@ int32_t opal_scene_add_phase(opal_scene *scene, const opal_phase_desc *desc) {
         require(desc->n_wavelengths >= 1 && desc->n_angles >= 2 && desc->wavelengths && desc->angles && desc->values,
                 "A table needs at least one wavelength and two angles");
         const size_t rows = size_t(desc->n_wavelengths), columns = size_t(desc->n_angles);
-        require(all_finite(desc->wavelengths, rows) && all_finite(desc->angles, columns) && all_finite(desc->values, rows * columns),
+        require(all_finite(desc->wavelengths, rows) && all_finite(desc->angles, columns) &&
+                    all_finite(desc->values, rows * columns),
                 "The phase table has a value that is not finite");
-        require(std::is_sorted(desc->wavelengths, desc->wavelengths + rows) && std::is_sorted(desc->angles, desc->angles + columns),
-                "The phase table's wavelengths and angles must ascend");
+        require(
+            std::is_sorted(desc->wavelengths, desc->wavelengths + rows) && std::is_sorted(desc->angles, desc->angles + columns),
+            "The phase table's wavelengths and angles must ascend");
         scene->phases.push_back(
             PhaseFunction::table(desc->wavelengths, desc->n_wavelengths, desc->angles, desc->n_angles, desc->values));
         break;
@@ -220,7 +223,8 @@ int32_t opal_scene_add_medium(opal_scene *scene, const opal_medium_desc *desc) {
   return guarded([&] {
     require(scene && desc, "No medium");
     const int32_t n = int32_t(scene->spectra.size());
-    require(desc->extinction < n && desc->scattering < n && desc->emission < n, "The medium names a spectrum that does not exist");
+    require(desc->extinction < n && desc->scattering < n && desc->emission < n,
+            "The medium names a spectrum that does not exist");
     require(desc->phase < int32_t(scene->phases.size()), "The medium names a phase function that does not exist");
     for (const int32_t s : {desc->extinction, desc->scattering, desc->emission})
       if (s >= 0)
@@ -260,15 +264,18 @@ int32_t opal_scene_update_material(opal_scene *scene, int32_t index, const opal_
 int32_t opal_scene_add_mesh(opal_scene *scene, const opal_mesh_desc *desc, int32_t *n_dropped) {
   return guarded([&] {
     require(scene && desc && desc->n_vertices >= 0 && desc->n_triangles >= 0, "No mesh");
-    require(desc->n_triangles == 0 || (desc->positions && desc->triangles), "A mesh with triangles needs positions and corners");
+    require(desc->n_triangles == 0 || (desc->positions && desc->triangles),
+            "A mesh with triangles needs positions and corners");
     auto mesh = std::make_unique<Mesh>();
     const size_t nv = size_t(desc->n_vertices), nt = size_t(desc->n_triangles);
     for (size_t i = 0; i < nt * 3; ++i)
-      require(desc->triangles[i] >= 0 && desc->triangles[i] < desc->n_vertices, "A triangle names a vertex that does not exist");
+      require(desc->triangles[i] >= 0 && desc->triangles[i] < desc->n_vertices,
+              "A triangle names a vertex that does not exist");
 
     std::vector<uint8_t> finite(nv, 1);
     for (size_t i = 0; i < nv; ++i)
-      finite[i] = all_finite(desc->positions + 3 * i, 3) && (!desc->positions_end || all_finite(desc->positions_end + 3 * i, 3));
+      finite[i] =
+          all_finite(desc->positions + 3 * i, 3) && (!desc->positions_end || all_finite(desc->positions_end + 3 * i, 3));
     std::vector<int32_t> kept;  // triangles whose corners are finite
     kept.reserve(nt);
     for (size_t t = 0; t < nt; ++t) {
@@ -362,8 +369,10 @@ int32_t opal_scene_add_instances(opal_scene *scene, const opal_instances_desc *d
 
 int32_t opal_scene_set_transforms(opal_scene *scene, int32_t first, int32_t count, const float *begin, const float *end) {
   return guarded([&] {
-    require(scene && begin && first >= 0 && count >= 0 && size_t(first) + size_t(count) <= scene->instances.size(), "No such instances");
-    require(all_finite(begin, size_t(count) * 12) && (!end || all_finite(end, size_t(count) * 12)), "A transform is not finite");
+    require(scene && begin && first >= 0 && count >= 0 && size_t(first) + size_t(count) <= scene->instances.size(),
+            "No such instances");
+    require(all_finite(begin, size_t(count) * 12) && (!end || all_finite(end, size_t(count) * 12)),
+            "A transform is not finite");
     for (int32_t i = 0; i < count; ++i)
       set_transform(scene->instances[size_t(first + i)], begin + 12 * i, end ? end + 12 * i : nullptr);
     scene->instances_dirty = true;
@@ -374,7 +383,8 @@ int32_t opal_scene_set_transforms(opal_scene *scene, int32_t first, int32_t coun
 int32_t opal_scene_add_light(opal_scene *scene, const opal_light_desc *desc) {
   return guarded([&] {
     require(scene && desc && desc->type >= OPAL_LIGHT_POINT && desc->type <= OPAL_LIGHT_ELLIPSE, "Unknown type of light");
-    require(all_finite(desc->transform, 12) && all_finite(desc->color, 3) && std::isfinite(desc->power), "A light has a value that is not finite");
+    require(all_finite(desc->transform, 12) && all_finite(desc->color, 3) && std::isfinite(desc->power),
+            "A light has a value that is not finite");
     require(desc->spectrum < int32_t(scene->spectra.size()), "A light names a spectrum that does not exist");
     Lamp lamp;
     lamp.desc = *desc;
@@ -421,8 +431,9 @@ int32_t opal_scene_set_world(opal_scene *scene, const opal_world_desc *desc) {
 
 int32_t opal_scene_set_camera(opal_scene *scene, const opal_camera_desc *desc) {
   return guarded([&] {
-    require(scene && desc && all_finite(desc->transform, 12) && all_finite(desc->transform_end, 12) && all_finite(desc->window, 4),
-            "The camera has a value that is not finite");
+    require(
+        scene && desc && all_finite(desc->transform, 12) && all_finite(desc->transform_end, 12) && all_finite(desc->window, 4),
+        "The camera has a value that is not finite");
     require(desc->window[1] > desc->window[0] && desc->window[3] > desc->window[2], "The camera's window is empty");
     scene->camera = *desc;
     scene->has_camera = true;
@@ -477,15 +488,18 @@ opal_render *opal_render_create(opal_scene *scene, const opal_render_settings *s
   opal_render *render = nullptr;
   const int32_t status = guarded([&] {
     require(scene && settings, "No scene or settings");
-    require(scene->top && !scene->geometry_dirty && !scene->instances_dirty && !scene->lights_dirty, "The scene was not committed");
+    require(scene->top && !scene->geometry_dirty && !scene->instances_dirty && !scene->lights_dirty,
+            "The scene was not committed");
     require(scene->has_camera, "The scene has no camera");
     const opal_render_settings &s = *settings;
-    require(s.width > 0 && s.height > 0 && int64_t(s.width) * s.height < int64_t(kStreamPhotons), "The resolution is out of range");
+    require(s.width > 0 && s.height > 0 && int64_t(s.width) * s.height < int64_t(kStreamPhotons),
+            "The resolution is out of range");
     require(s.region[0] >= 0 && s.region[1] >= 0 && s.region[2] <= s.width && s.region[3] <= s.height &&
                 s.region[0] < s.region[2] && s.region[1] < s.region[3],
             "The region to render is empty or lies outside the frame");
     require(s.samples_per_pass > 0, "A pass needs at least one sample");
-    require(s.photons_per_pass >= 0 && s.photons_carry >= 0 && s.photons_carry <= OPAL_CARRY_NONE, "The photon settings are out of range");
+    require(s.photons_per_pass >= 0 && s.photons_carry >= 0 && s.photons_carry <= OPAL_CARRY_NONE,
+            "The photon settings are out of range");
     require(s.wavelength_first >= 360 && s.wavelength_last <= 830 && s.wavelength_last - s.wavelength_first >= 1,
             "The wavelengths must lie between 360 and 830 nm, at least 1 nm apart");
     require(s.spectral_bins >= 0 && s.spectral_bins <= 1000, "Between 0 and 1000 spectral bins are possible");

@@ -47,7 +47,8 @@ void ColourTables::prepare(const opal_tables &tables, float first, float last) {
   const double scale = 1.0 / (0.2126729 * rgb_of_d65[0] + 0.7151522 * rgb_of_d65[1] + 0.0721750 * rgb_of_d65[2]);
   for (int i = 0; i < kTableSize; ++i) d65[i] = float(d65[i] * scale * luminance_of_one);
   for (int c = 0; c < 3; ++c)
-    for (int i = 0; i < kTableSize; ++i) rgb_response[c][i] = float(rgb_response[c][i] / (rgb_of_d65[c] * scale * luminance_of_one));
+    for (int i = 0; i < kTableSize; ++i)
+      rgb_response[c][i] = float(rgb_response[c][i] / (rgb_of_d65[c] * scale * luminance_of_one));
 
   double total = 0;
   std::array<double, kTableSize> running{};

@@ -10,9 +10,10 @@
 namespace opal {
 
 struct ColourTables {
-  SpectralTable rgb_response[3];  // per nm: linear Rec.709 of a unit of spectral radiance (matching functions x matrix / normalisation)
+  SpectralTable
+      rgb_response[3];  // per nm: linear Rec.709 of a unit of spectral radiance (matching functions x matrix / normalisation)
   SpectralTable basis[3];
-  SpectralTable d65;              // scaled to luminance 1; a spectrum of 1 has luminance 1 too
+  SpectralTable d65;                    // scaled to luminance 1; a spectrum of 1 has luminance 1 too
   float first_nm = 360, last_nm = 830;  // the sampled range
   // Cumulative distribution of the wavelength density over the 470 intervals, and the density per nm.
   SpectralTable cdf, pdf;

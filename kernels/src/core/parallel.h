@@ -12,9 +12,7 @@
 
 namespace opal {
 
-inline int resolve_threads(int wanted) {
-  return wanted > 0 ? wanted : std::max(1, int(std::thread::hardware_concurrency()));
-}
+inline int resolve_threads(int wanted) { return wanted > 0 ? wanted : std::max(1, int(std::thread::hardware_concurrency())); }
 
 // Runs task(i) for i in [0, n) on `threads` threads (the caller is one of them). Stops handing out tasks when `cancel`
 // becomes true or a task throws; the first exception is thrown again here. Returns whether every task was run.

@@ -35,8 +35,7 @@ constexpr uint32_t owen_scramble_reversed(uint32_t x, uint32_t seed) {
 class Sampler {
  public:
   // stream: what the numbers are for (a pixel, the photons of a pass); index: which sample of it.
-  constexpr Sampler(uint32_t seed, uint32_t stream, uint32_t index)
-      : key_(hash32(seed, stream)), index_(index) {}
+  constexpr Sampler(uint32_t seed, uint32_t stream, uint32_t index) : key_(hash32(seed, stream)), index_(index) {}
 
   // Two well-stratified numbers in [0,1). Even dimensions only; a pair never straddles a group of four.
   Vec2 get2d(uint32_t dimension) const {
@@ -70,25 +69,25 @@ class Sampler {
 
 // Where each decision of a path finds its numbers.
 enum Dimension : uint32_t {
-  kDimFilter = 0,       // 2
-  kDimLens = 2,         // 2
-  kDimTime = 4,         // 1
-  kDimWavelength = 5,   // 1
-  kDimEmissionLight = 6, // 2: which light, spare
+  kDimFilter = 0,         // 2
+  kDimLens = 2,           // 2
+  kDimTime = 4,           // 1
+  kDimWavelength = 5,     // 1
+  kDimEmissionLight = 6,  // 2: which light, spare
   kDimEmissionPosition = 8,
   kDimEmissionDirection = 10,
-  kDimBounce = 16,      // first of the per-bounce blocks
+  kDimBounce = 16,  // first of the per-bounce blocks
 };
 inline constexpr uint32_t kDimsPerBounce = 20;
 enum BounceDimension : uint32_t {
-  kDimBsdf = 0,         // 2
-  kDimBsdfLobe = 2,     // 1
-  kDimRoulette = 3,     // 1
-  kDimLight = 4,        // 2
-  kDimLightPick = 6,    // 1
-  kDimTransparency = 7, // 1
-  kDimMedium = 8,       // 1
-  kDimMediumPhase = 10, // 2
+  kDimBsdf = 0,             // 2
+  kDimBsdfLobe = 2,         // 1
+  kDimRoulette = 3,         // 1
+  kDimLight = 4,            // 2
+  kDimLightPick = 6,        // 1
+  kDimTransparency = 7,     // 1
+  kDimMedium = 8,           // 1
+  kDimMediumPhase = 10,     // 2
   kDimMediumDistance = 12,  // 2
   kDimMediumLight = 14,     // 2
   kDimMediumPick = 16,      // 1

@@ -25,14 +25,14 @@ struct alignas(32) Spectrum {
   constexpr float operator[](int i) const { return v[i]; }
   constexpr float &operator[](int i) { return v[i]; }
 
-#define OPAL_SPECTRUM_OP(op)                                     \
-  constexpr Spectrum &operator op(const Spectrum &b) {           \
-    for (int i = 0; i < kWavelengths; ++i) v[i] op b.v[i];       \
-    return *this;                                                \
-  }                                                              \
-  constexpr Spectrum &operator op(float b) {                     \
-    for (int i = 0; i < kWavelengths; ++i) v[i] op b;            \
-    return *this;                                                \
+#define OPAL_SPECTRUM_OP(op)                               \
+  constexpr Spectrum &operator op(const Spectrum &b) {     \
+    for (int i = 0; i < kWavelengths; ++i) v[i] op b.v[i]; \
+    return *this;                                          \
+  }                                                        \
+  constexpr Spectrum &operator op(float b) {               \
+    for (int i = 0; i < kWavelengths; ++i) v[i] op b;      \
+    return *this;                                          \
   }
   OPAL_SPECTRUM_OP(+=)
   OPAL_SPECTRUM_OP(-=)
@@ -81,18 +81,17 @@ inline float lookup(const SpectralTable &table, float nm) {
 
 // The wavelengths of one path with everything that depends on them alone, looked up once.
 struct Wavelengths {
-  Spectrum nm;                // wavelengths
-  Spectrum pdf;               // their probability density, 1/nm
-  Spectrum basis[3];          // uplift basis for red, green, blue
-  Spectrum d65;               // D65, scaled so that a reflectance of 1 under it has luminance 1
-  Spectrum to_rgb[3];         // radiance -> linear Rec.709, with 1/(pdf * kWavelengths) folded in
+  Spectrum nm;         // wavelengths
+  Spectrum pdf;        // their probability density, 1/nm
+  Spectrum basis[3];   // uplift basis for red, green, blue
+  Spectrum d65;        // D65, scaled so that a reflectance of 1 under it has luminance 1
+  Spectrum to_rgb[3];  // radiance -> linear Rec.709, with 1/(pdf * kWavelengths) folded in
 };
 
 // Reflectance-like: a linear Rec.709 colour as a spectrum. Linear in rgb, equal to 1 for white, in [0,1] for colours in [0,1].
 inline Spectrum uplift(const Vec3 &rgb, const Wavelengths &w) {
   Spectrum s;
-  for (int i = 0; i < kWavelengths; ++i)
-    s.v[i] = rgb.x * w.basis[0].v[i] + rgb.y * w.basis[1].v[i] + rgb.z * w.basis[2].v[i];
+  for (int i = 0; i < kWavelengths; ++i) s.v[i] = rgb.x * w.basis[0].v[i] + rgb.y * w.basis[1].v[i] + rgb.z * w.basis[2].v[i];
   return s;
 }
 // Light-like: the same times D65.
@@ -100,8 +99,7 @@ inline Spectrum uplift_light(const Vec3 &rgb, const Wavelengths &w) { return upl
 
 inline Vec3 to_rgb(const Spectrum &radiance, const Wavelengths &w) {
   Vec3 rgb;
-  for (int i = 0; i < kWavelengths; ++i)
-    rgb += Vec3{w.to_rgb[0].v[i], w.to_rgb[1].v[i], w.to_rgb[2].v[i]} * radiance.v[i];
+  for (int i = 0; i < kWavelengths; ++i) rgb += Vec3{w.to_rgb[0].v[i], w.to_rgb[1].v[i], w.to_rgb[2].v[i]} * radiance.v[i];
   return rgb;
 }
 

@@ -71,13 +71,11 @@ struct Transform {
             m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
   }
   constexpr Vec3 vector(const Vec3 &v) const {
-    return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z,
-            m[8] * v.x + m[9] * v.y + m[10] * v.z};
+    return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z, m[8] * v.x + m[9] * v.y + m[10] * v.z};
   }
   // For normals: multiplies by the transpose, so call it on the inverse transform.
   constexpr Vec3 transposed_vector(const Vec3 &v) const {
-    return {m[0] * v.x + m[4] * v.y + m[8] * v.z, m[1] * v.x + m[5] * v.y + m[9] * v.z,
-            m[2] * v.x + m[6] * v.y + m[10] * v.z};
+    return {m[0] * v.x + m[4] * v.y + m[8] * v.z, m[1] * v.x + m[5] * v.y + m[9] * v.z, m[2] * v.x + m[6] * v.y + m[10] * v.z};
   }
   constexpr Vec3 axis(int i) const { return {m[i], m[4 + i], m[8 + i]}; }
   constexpr Vec3 origin() const { return axis(3); }

@@ -20,9 +20,7 @@ int pass_channels(int pass, int spectral_bins);
 // One pass's pixels while it is rendered: single precision, every enabled output.
 struct PassBuffer {
   void allocate(int width, int height, uint32_t passes, int spectral_bins);
-  float *at(int pass, size_t pixel) {
-    return values[pass].data() + pixel * size_t(channels[pass]);
-  }
+  float *at(int pass, size_t pixel) { return values[pass].data() + pixel * size_t(channels[pass]); }
   bool has(int pass) const { return !values[pass].empty(); }
 
   std::vector<float> values[OPAL_PASS_COUNT];

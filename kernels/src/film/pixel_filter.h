@@ -14,7 +14,9 @@ namespace opal {
 class PixelFilter {
  public:
   PixelFilter(int kind, float width)
-      : width_(std::max(width, 1e-3f) * (kind == OPAL_FILTER_GAUSSIAN ? 3.0f : kind == OPAL_FILTER_BLACKMAN_HARRIS ? 2.0f : 1.0f)) {
+      : width_(std::max(width, 1e-3f) * (kind == OPAL_FILTER_GAUSSIAN          ? 3.0f
+                                         : kind == OPAL_FILTER_BLACKMAN_HARRIS ? 2.0f
+                                                                               : 1.0f)) {
     // Tabulated inverse of the cumulative distribution over [-width/2, width/2]; the filters are even.
     constexpr int kSteps = 4096;
     std::array<double, kSteps + 1> cdf{};

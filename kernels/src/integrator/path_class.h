@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The one predicate on path classes: which light the photons bring and which the camera's paths find.
 //
-// Every scattering event is Sharp (a lobe narrower than kSharpAlpha of a material that makes caustics) or Rough. Reading a path from
-// its light, it is
+// Every scattering event is Sharp (a lobe narrower than kSharpAlpha of a material that makes caustics) or Rough. Reading a path
+// from its light, it is
 //   direct    when the first event is rough:            L R ...
 //   caustic   when sharp events come before a rough one: L S+ R ...
 //   indirect  for what reaches a rough event after another rough one.

@@ -13,8 +13,8 @@
 namespace opal {
 namespace {
 
-constexpr uint32_t kRouletteStart = 4;    // events before Russian roulette sets in
-constexpr uint32_t kMaxEvents = 4096;     // nothing physical gets there; guards against loops of free passes
+constexpr uint32_t kRouletteStart = 4;  // events before Russian roulette sets in
+constexpr uint32_t kMaxEvents = 4096;   // nothing physical gets there; guards against loops of free passes
 
 // Where the path last scattered, as the light sampler saw it.
 struct LastEvent {
@@ -269,8 +269,10 @@ class CameraPath {
         !(sample.pdf > 0))
       return;
     const SplitValue value = evaluate(surface_, sample.wi, w_, Transport::Radiance);
-    const bool keep_rough = !brought_by_photons(scene_, settings_.photons_carry, EventClass::Rough, rough_events_ > 0, sample.source);
-    const bool keep_sharp = rough_in_medium_ || !brought_by_photons(scene_, settings_.photons_carry, EventClass::Sharp, rough_events_ > 0, sample.source);
+    const bool keep_rough =
+        !brought_by_photons(scene_, settings_.photons_carry, EventClass::Rough, rough_events_ > 0, sample.source);
+    const bool keep_sharp = rough_in_medium_ || !brought_by_photons(scene_, settings_.photons_carry, EventClass::Sharp,
+                                                                    rough_events_ > 0, sample.source);
     // Lamps hidden from a kind of ray do not light the lobes that send such rays.
     const bool behind = dot(sample.wi, sp.ng) < 0;
     Spectrum f(0.0f);
@@ -290,7 +292,8 @@ class CameraPath {
   // What of a light sample arrives; false: nothing.
   bool passes(const Vec3 &origin, const LightSample &sample, Passage &through) {
     if (!sample.cast_shadow) return true;
-    const Ray shadow{origin, sample.wi, 0, std::isfinite(sample.distance) ? sample.distance * (1 - 1e-5f) : kInfinity, ray_.time};
+    const Ray shadow{origin, sample.wi, 0, std::isfinite(sample.distance) ? sample.distance * (1 - 1e-5f) : kInfinity,
+                     ray_.time};
     ++counts_.shadow;
     through = passage(scene_, shadow, media_, settings_.transparent_depth, w_);
     return !through.blocked();
@@ -452,7 +455,11 @@ class CameraPath {
       const float sum = std::abs(rgb.x) + std::abs(rgb.y) + std::abs(rgb.z);
       if (sum > limit * 3) rgb *= limit * 3 / sum, radiance *= limit * 3 / sum;
     }
-    (medium_first_ ? light_.medium : caustic ? light_.caustics : events == 0 ? light_.emission : events == 1 ? light_.direct : light_.indirect) += rgb;
+    (medium_first_ ? light_.medium
+     : caustic     ? light_.caustics
+     : events == 0 ? light_.emission
+     : events == 1 ? light_.direct
+                   : light_.indirect) += rgb;
     light_.spectral += radiance;
   }
 
@@ -495,7 +502,7 @@ class CameraPath {
   bool alive_ = true;
   bool rough_in_medium_ = false;  // the last rough event was a medium's
   bool medium_first_ = false;     // the first event was a medium's
-  bool final_ray_ = false;      // only lamps are looked for: photons bring everything else
+  bool final_ray_ = false;        // only lamps are looked for: photons bring everything else
 };
 
 }  // namespace

@@ -9,11 +9,11 @@ namespace opal {
 
 // What one camera path brings, in linear Rec.709 and by kind of light; their sum is the picture.
 struct PathLight {
-  Vec3 emission;   // seen at first hand
-  Vec3 direct;     // one event
-  Vec3 indirect;   // more than one
-  Vec3 caustics;   // a rough event lit through sharp ones
-  Vec3 medium;     // whose first event, or whose source, is in a medium
+  Vec3 emission;  // seen at first hand
+  Vec3 direct;    // one event
+  Vec3 indirect;  // more than one
+  Vec3 caustics;  // a rough event lit through sharp ones
+  Vec3 medium;    // whose first event, or whose source, is in a medium
   float alpha = 1;
   // Guides, of the first event that is not straight through.
   Vec3 normal, position, albedo;

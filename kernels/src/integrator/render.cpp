@@ -86,8 +86,9 @@ bool Render::trace_photons_of(PassContext &pass, PassBuffer &buffer, SplatSums &
   for (PhotonChunk &chunk : chunks) {  // in order: the sums do not depend on who traced what
     photons.insert(photons.end(), chunk.photons.begin(), chunk.photons.end());
     for (const Splat &splat : chunk.splats)
-      (splat.pass == OPAL_PASS_CAUSTICS ? splats.caustics : splat.pass == OPAL_PASS_DIRECT ? splats.direct : splats.indirect)
-          [splat.pixel] += splat.rgb;
+      (splat.pass == OPAL_PASS_CAUSTICS ? splats.caustics
+       : splat.pass == OPAL_PASS_DIRECT ? splats.direct
+                                        : splats.indirect)[splat.pixel] += splat.rgb;
     for (const auto &[slot, value] : chunk.spectral)
       if (buffer.has(OPAL_PASS_SPECTRAL)) buffer.values[OPAL_PASS_SPECTRAL][slot] += value;
     rays += chunk.rays;
@@ -117,8 +118,8 @@ bool Render::trace_camera_of(const PassContext &pass, PassBuffer &buffer, const 
     float alpha = 0, depth = 0;
     int hits = 0;
     for (int s = 0; s < samples; ++s) {
-      const PathLight light = trace_camera_path(pass, uint32_t(x + settings_.region[0]), uint32_t(y + settings_.region[1]),
-                                                uint32_t(s), counts);
+      const PathLight light =
+          trace_camera_path(pass, uint32_t(x + settings_.region[0]), uint32_t(y + settings_.region[1]), uint32_t(s), counts);
       emission += light.emission, direct += light.direct, indirect += light.indirect, caustics += light.caustics;
       medium += light.medium;
       alpha += light.alpha;

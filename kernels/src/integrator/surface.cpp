@@ -49,8 +49,8 @@ void make_surface(const Scene &scene, const Ray &ray, const Hit &hit, uint32_t r
   out.transmissive = false;
   for (int i = 0; i < set.count; ++i) {
     const LobeKind kind = set.lobes[i].kind;
-    out.transmissive |= kind == LobeKind::Translucent || kind == LobeKind::Glass || kind == LobeKind::Refraction ||
-                        kind == LobeKind::Gem;
+    out.transmissive |=
+        kind == LobeKind::Translucent || kind == LobeKind::Glass || kind == LobeKind::Refraction || kind == LobeKind::Gem;
   }
 }
 
@@ -65,7 +65,8 @@ SplitValue evaluate(const Surface &surface, const Vec3 &wi, const Wavelengths &w
   return value;
 }
 
-Spectrum rough_towards_camera(const Scene &scene, const Surface &surface, const Vec3 &viewer, float distance, const Wavelengths &w) {
+Spectrum rough_towards_camera(const Scene &scene, const Surface &surface, const Vec3 &viewer, float distance,
+                              const Wavelengths &w) {
   if (surface.is_gem) return bsdf_eval_rough(surface.closures, surface.sp, viewer, w, Transport::Flux);
   ShadingPoint sp = surface.sp;
   const Vec3 light = sp.wo;

@@ -14,9 +14,9 @@ struct Surface {
   ShadingPoint sp;
   ClosureSet closures;
   uint32_t material = 0;
-  bool caster = false;        // its sharp lobes make caustics
+  bool caster = false;  // its sharp lobes make caustics
   bool is_gem = false;
-  bool nothing = false;       // a gem's boundary inside another interior: go straight on
+  bool nothing = false;  // a gem's boundary inside another interior: go straight on
   bool has_smooth_lobe = false;
   bool transmissive = false;  // light can arrive from behind
   Boundary boundary;          // gems
@@ -34,7 +34,8 @@ SplitValue evaluate(const Surface &surface, const Vec3 &wi, const Wavelengths &w
 // For light that arrives from surface.sp.wo: what rough lobes send towards a camera in direction `viewer`, as
 // bsdf_eval_rough(..., Transport::Flux) would say. The surface is shaded anew as the camera sees it, because the weights of
 // layered materials (and Layer Weight, Light Path nodes) depend on who looks.
-Spectrum rough_towards_camera(const Scene &scene, const Surface &surface, const Vec3 &viewer, float distance, const Wavelengths &w);
+Spectrum rough_towards_camera(const Scene &scene, const Surface &surface, const Vec3 &viewer, float distance,
+                              const Wavelengths &w);
 
 // The class of a sampled event: of a sum of rough and sharp lobes the sharp share is taken with its probability (`u`).
 EventClass classify(const Surface &surface, const BsdfSample &sample, const Wavelengths &w, Transport transport, float u);

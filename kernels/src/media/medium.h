@@ -14,7 +14,7 @@ struct Medium {
   int extinction = -1;  // sigma_t
   int scattering = -1;  // sigma_s
   int emission = -1;
-  int phase = -1;       // index into Scene::phases, -1: isotropic
+  int phase = -1;  // index into Scene::phases, -1: isotropic
 };
 
 // The media a path is inside of, each entered through the boundary of one instance.

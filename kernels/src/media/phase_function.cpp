@@ -60,7 +60,8 @@ void PhaseFunction::rows(float nm, int &first, int &second, float &weight) const
   const auto it = std::upper_bound(wavelengths_.begin(), wavelengths_.end(), nm);
   second = std::clamp(int(it - wavelengths_.begin()), 0, n_rows_ - 1);
   first = std::max(0, int(it - wavelengths_.begin()) - 1);
-  weight = second > first ? (nm - wavelengths_[size_t(first)]) / (wavelengths_[size_t(second)] - wavelengths_[size_t(first)]) : 0.0f;
+  weight =
+      second > first ? (nm - wavelengths_[size_t(first)]) / (wavelengths_[size_t(second)] - wavelengths_[size_t(first)]) : 0.0f;
 }
 
 float PhaseFunction::row_value(int row, float cosine) const {

@@ -25,7 +25,8 @@ class PhaseFunction {
   static PhaseFunction rayleigh() { return PhaseFunction(PhaseKind::Rayleigh, 0); }
   // values: n_wavelengths rows of n_angles, in 1/sr up to a factor (rows are normalised); wavelengths (nm) and angles
   // (radians, from 0 to pi) ascend. Linear in the angle's cosine and in wavelength.
-  static PhaseFunction table(const float *wavelengths, int n_wavelengths, const float *angles, int n_angles, const float *values);
+  static PhaseFunction table(const float *wavelengths, int n_wavelengths, const float *angles, int n_angles,
+                             const float *values);
 
   // 1/sr at one wavelength (nm) for the cosine of the angle.
   float value(float nm, float cosine) const;

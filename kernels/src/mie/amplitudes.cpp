@@ -54,8 +54,13 @@ std::vector<Term> series(const Coefficients &c) {
   std::vector<Term> result(c.a.size());
   for (size_t i = 0; i < result.size(); ++i) {
     const double n = double(i + 1), weight = (2 * n + 1) / (n * (n + 1));
-    result[i] = {weight * c.a[i].real(), weight * c.a[i].imag(), weight * c.b[i].real(), weight * c.b[i].imag(),
-                 n,                      (2 * n + 1) / n,        (n + 1) / n};
+    result[i] = {weight * c.a[i].real(),
+                 weight * c.a[i].imag(),
+                 weight * c.b[i].real(),
+                 weight * c.b[i].imag(),
+                 n,
+                 (2 * n + 1) / n,
+                 (n + 1) / n};
   }
   return result;
 }

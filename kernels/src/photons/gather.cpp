@@ -46,8 +46,7 @@ Spectrum gather_photons(const PhotonMap &map, const Surface &surface, const Wave
     const float cosine = std::abs(dot(wi, sp.ns));
     if (!(cosine > 1e-6f)) continue;
     const Spectrum f = bsdf_eval_rough(surface.closures, sp, wi, w, Transport::Radiance) / cosine;
-    for (int k = 0; k < kWavelengths; ++k)
-      sum[k] += f[k] * photon.flux[PassContext::position_of(index, uint32_t(k))];
+    for (int k = 0; k < kWavelengths; ++k) sum[k] += f[k] * photon.flux[PassContext::position_of(index, uint32_t(k))];
   }
   return sum / (kPi * radius2);
 }

@@ -152,9 +152,7 @@ class PhotonPath {
     return false;
   }
 
-  void go_on(const Vec3 &direction) {
-    ray_ = {offset_origin(surface_.sp, direction), direction, 0, kInfinity, ray_.time};
-  }
+  void go_on(const Vec3 &direction) { ray_ = {offset_origin(surface_.sp, direction), direction, 0, kInfinity, ray_.time}; }
 
   // Leaves the photon: in the map, and on the film where the camera sees this point.
   void leave() {
@@ -190,7 +188,8 @@ class PhotonPath {
     ++out_.rays;
     if (through.blocked()) return;
     radiance *= uplift(through.surfaces, w_) * through.medium;
-    const uint32_t pixel = (uint32_t(y) - uint32_t(region[1])) * uint32_t(region[2] - region[0]) + (uint32_t(x) - uint32_t(region[0]));
+    const uint32_t pixel =
+        (uint32_t(y) - uint32_t(region[1])) * uint32_t(region[2] - region[0]) + (uint32_t(x) - uint32_t(region[0]));
     out_.splats.push_back({pixel, photon_pass(sharp_events_, rough_events_), to_rgb(radiance, w_)});
     if (settings_.spectral_bins > 0)
       for (int k = 0; k < kWavelengths; ++k) {

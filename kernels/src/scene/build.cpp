@@ -171,7 +171,8 @@ void collect_emissive(Scene &scene) {
       if (material.surface.constant_emission) {
         e.emission = material.surface.emission;
       } else {  // the mean over a few points of the face
-        constexpr float kPoints[7][2] = {{1 / 3.f, 1 / 3.f}, {.1f, .1f}, {.8f, .1f}, {.1f, .8f}, {.45f, .1f}, {.1f, .45f}, {.45f, .45f}};
+        constexpr float kPoints[7][2] = {{1 / 3.f, 1 / 3.f}, {.1f, .1f},  {.8f, .1f},  {.1f, .8f},
+                                         {.45f, .1f},        {.1f, .45f}, {.45f, .45f}};
         for (const auto &uv : kPoints) {
           const Vec3 p = e.p0 * (1 - uv[0] - uv[1]) + e.p1 * uv[0] + e.p2 * uv[1];
           const Vec3 n = safe_normalize(cross(e.p1 - e.p0, e.p2 - e.p0), {0, 0, 1});
@@ -232,8 +233,9 @@ void Scene::commit() {
 int64_t Scene::memory_bytes() const {
   size_t bytes = instances.size() * sizeof(Instance) + emissive.size() * sizeof(EmissiveTriangle);
   for (const auto &mesh : meshes) {
-    bytes += (mesh->positions.size() + mesh->positions_end.size() + mesh->corner_normals.size() +
-              mesh->corner_tangents.size() + mesh->generated.size()) * sizeof(float);
+    bytes += (mesh->positions.size() + mesh->positions_end.size() + mesh->corner_normals.size() + mesh->corner_tangents.size() +
+              mesh->generated.size()) *
+             sizeof(float);
     bytes += (mesh->triangles.size() + mesh->material_slots.size()) * sizeof(int32_t);
     for (const Attribute &a : mesh->attributes) bytes += a.values.size() * sizeof(float);
   }

@@ -3,10 +3,10 @@
 #include "scene/embree_api.h"
 
 #if defined(_WIN32)
-#  define WIN32_LEAN_AND_MEAN
-#  include <windows.h>
+#define WIN32_LEAN_AND_MEAN
+#include <windows.h>
 #else
-#  include <dlfcn.h>
+#include <dlfcn.h>
 #endif
 
 namespace opal {
@@ -19,11 +19,11 @@ void *find_symbol(void *library, const char *name) {
   return reinterpret_cast<void *>(GetProcAddress(static_cast<HMODULE>(library), name));
 }
 #else
-#  if defined(__APPLE__)
+#if defined(__APPLE__)
 constexpr const char *kSoname = "libembree4.dylib";
-#  else
+#else
 constexpr const char *kSoname = "libembree4.so.4";
-#  endif
+#endif
 void *open_library(const char *path) { return dlopen(path, RTLD_NOW | RTLD_LOCAL); }
 void *find_symbol(void *library, const char *name) { return dlsym(library, name); }
 #endif

@@ -109,8 +109,7 @@ Vec3 offset_origin(const ShadingPoint &sp, const Vec3 &direction) {
   // bound is nothing (a face that lies exactly in a coordinate plane) a trace remains, so that no denormal decides.
   const Vec3 n = sp.ng;
   const float trace = 0x1p-44f * (std::abs(sp.p.x) + std::abs(sp.p.y) + std::abs(sp.p.z) + sp.ray_length);
-  const float distance =
-      3 * (std::abs(n.x) * sp.error.x + std::abs(n.y) * sp.error.y + std::abs(n.z) * sp.error.z) + trace;
+  const float distance = 3 * (std::abs(n.x) * sp.error.x + std::abs(n.y) * sp.error.y + std::abs(n.z) * sp.error.z) + trace;
   const Vec3 offset = n * (dot(direction, n) >= 0 ? distance : -distance);
   Vec3 p = sp.p + offset;
   for (int i = 0; i < 3; ++i) {  // round away from the surface, never back onto it

@@ -68,7 +68,8 @@ inline Spectrum index_of_refraction(const Scene &scene, const InteriorStack::Ent
 }
 
 // Beer-Lambert over `distance` metres of the interior that counts.
-inline void absorb(const Scene &scene, const InteriorStack &interior, float distance, const Wavelengths &w, Spectrum &throughput) {
+inline void absorb(const Scene &scene, const InteriorStack &interior, float distance, const Wavelengths &w,
+                   Spectrum &throughput) {
   const InteriorStack::Entry *entry = interior.current();
   if (!entry) return;
   const int32_t table = scene.materials[entry->material].gem.absorption_spectrum;

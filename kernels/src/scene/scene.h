@@ -29,16 +29,16 @@ struct Attribute {
 };
 
 struct Mesh {
-  std::vector<float> positions;        // 3 a vertex (+1 float of padding at the end, for Embree)
-  std::vector<float> positions_end;    // empty without motion
-  std::vector<int32_t> triangles;      // 3 a triangle
-  std::vector<float> corner_normals;   // 9 a triangle, or empty: flat
-  std::vector<float> corner_tangents;  // 12 a triangle, or empty
-  std::vector<int32_t> material_slots; // 1 a triangle, or empty: 0
-  std::vector<float> generated;        // 3 a vertex, or empty
+  std::vector<float> positions;         // 3 a vertex (+1 float of padding at the end, for Embree)
+  std::vector<float> positions_end;     // empty without motion
+  std::vector<int32_t> triangles;       // 3 a triangle
+  std::vector<float> corner_normals;    // 9 a triangle, or empty: flat
+  std::vector<float> corner_tangents;   // 12 a triangle, or empty
+  std::vector<int32_t> material_slots;  // 1 a triangle, or empty: 0
+  std::vector<float> generated;         // 3 a vertex, or empty
   std::vector<Attribute> attributes;
-  Bounds bounds;                       // object space, both ends of the motion
-  RTCScene embree = nullptr;           // one-triangle-mesh scene, instanced
+  Bounds bounds;              // object space, both ends of the motion
+  RTCScene embree = nullptr;  // one-triangle-mesh scene, instanced
   bool dirty = true;
 
   int n_triangles() const { return int(triangles.size() / 3); }
@@ -74,9 +74,9 @@ struct Material {
 
 struct EmissiveTriangle {
   uint32_t instance = 0, triangle = 0, material = 0;
-  Vec3 p0, p1, p2;      // world space
+  Vec3 p0, p1, p2;  // world space
   float area = 0;
-  Vec3 emission;        // estimate, for importance
+  Vec3 emission;  // estimate, for importance
 };
 
 struct Lamp {
@@ -123,17 +123,17 @@ struct Scene {
   bool has_camera = false;
 
   // Built by commit().
-  Bounds bounds;                            // of everything finite
-  std::vector<EmissiveTriangle> emissive;   // sorted by (instance, triangle)
-  std::vector<EmissionTarget> casters;      // spheres round what can make caustics
+  Bounds bounds;                           // of everything finite
+  std::vector<EmissiveTriangle> emissive;  // sorted by (instance, triangle)
+  std::vector<EmissionTarget> casters;     // spheres round what can make caustics
   std::shared_ptr<LightTables> lights;
   double build_seconds = 0;
-  bool any_transparent_shadow = false;      // a material that shadow rays must look through
-  bool any_medium = false;                  // rays must keep track of what they are in
+  bool any_transparent_shadow = false;  // a material that shadow rays must look through
+  bool any_medium = false;              // rays must keep track of what they are in
   bool geometry_dirty = true, instances_dirty = true, lights_dirty = true;
 
   Hit intersect(const Ray &ray, uint32_t visibility) const;
-  bool occluded(const Ray &ray, uint32_t visibility) const;   // opaque things only matter to the caller
+  bool occluded(const Ray &ray, uint32_t visibility) const;  // opaque things only matter to the caller
   const Material &material_at(const Hit &hit) const;
   uint32_t material_index(uint32_t instance, uint32_t triangle) const;
   // Fills everything but ray_kind and depth.
