@@ -162,6 +162,8 @@ class _Worker:
             self._render_passes(self._settings, self.total)
         except Cancelled:
             pass
+        except ReferenceError:
+            pass  # Blender took the engine away meanwhile (another shading, the extension disabled): nobody is left to draw for
         except (OpalError, MemoryError) as error:
             self.failure = str(error) or "There is not enough memory."
             self._redraw()
