@@ -104,3 +104,22 @@ def render(opal, tmp_path):
         return pixels.reshape(size[1], size[0], 4)
 
     return run
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_sessionfinish(session, exitstatus):
+    session.config.opal_exit_status = int(exitstatus)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_unconfigure(config):
+    # bpy 4.5 hangs when Python ends with an add-on's classes registered: take them away, and leave without bpy's own end.
+    if getattr(config, "opal", None) is None:
+        return
+    import addon_utils
+
+    addon_utils.disable(PACKAGE)
+    sys.stdout.flush()
+    sys.stderr.flush()
+    _profile.cleanup()
+    os._exit(getattr(config, "opal_exit_status", 1))
