@@ -50,7 +50,8 @@ inline Vec3 safe_normalize(const Vec3 &a, const Vec3 &fallback) {
 }
 constexpr Vec3 reflect(const Vec3 &w, const Vec3 &n) { return 2 * dot(w, n) * n - w; }
 constexpr Vec3 lerp(const Vec3 &a, const Vec3 &b, float t) { return a * (1 - t) + b * t; }
-constexpr float lerp(float a, float b, float t) { return a * (1 - t) + b * t; }
+// Between equals exactly their value: a constant table of indices must not look dispersive by its last bit.
+constexpr float lerp(float a, float b, float t) { return a + (b - a) * t; }
 constexpr Vec3 min(const Vec3 &a, const Vec3 &b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
 constexpr Vec3 max(const Vec3 &a, const Vec3 &b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
 constexpr float max_component(const Vec3 &a) { return std::max(a.x, std::max(a.y, a.z)); }
