@@ -241,6 +241,7 @@ _OWNERS = (
     (bpy.types.Scene, OpalSceneProperties),
     (bpy.types.ViewLayer, OpalViewLayerProperties),
     (bpy.types.Material, OpalMaterialProperties),
+    (bpy.types.World, media_properties.OpalWorldProperties),
 )
 
 
