@@ -92,7 +92,14 @@ typedef struct opal_phase_desc {
   int32_t n_wavelengths, n_angles;
   const float *wavelengths; /* table: nm, ascending */
   const float *angles;      /* table: radians between propagation directions, from 0 to pi, ascending */
-  const float *values;      /* table: n_wavelengths x n_angles, 1/sr; each row is normalised */
+  const float *values;      /* table: n_elevations x n_clocks x n_wavelengths x n_angles, 1/sr; each row is normalised */
+  /* Tables only. Degree of polarisation of what scatters unpolarised light, as `values`: 1 is all perpendicular to the plane of
+   * scattering, -1 all in it. NULL: 0. */
+  const float *polarization;
+  /* Particles that are not round and fall along -Z: the light's height over the horizon (radians, ascending) and the place on a
+   * bow as seen by the camera, from 0 above the antisolar point to pi below it (ascending). 0 and NULL: the same all round. */
+  int32_t n_elevations, n_clocks;
+  const float *elevations, *clocks;
 } opal_phase_desc;
 
 OPAL_EXPORT int32_t opal_scene_add_phase(opal_scene *scene, const opal_phase_desc *phase);
@@ -265,7 +272,9 @@ typedef struct opal_camera_desc {
   float aperture_radius; /* metres, 0: pinhole */
   float focus_distance;
   float blade_rotation;
-  float aperture_ratio; /* 1: round */
+  float aperture_ratio;  /* 1: round */
+  int32_t polarizer;     /* 1: a linear polarising filter before the lens; it takes half of unpolarised light */
+  float polarizer_angle; /* of what it lets through, radians from the camera's X axis towards Y */
 } opal_camera_desc;
 
 OPAL_EXPORT int32_t opal_scene_set_camera(opal_scene *scene, const opal_camera_desc *camera);

@@ -196,7 +196,12 @@ class Phase:
     wavelengths, angles : array_like, optional
         A table's nodes: (n,) nm and (m,) radians from 0 to π, ascending.
     values : array_like, optional
-        (n, m) in 1/sr; rows are normalised.
+        (n, m) in 1/sr; rows are normalised. With elevations and clocks (n_elevations, n_clocks, n, m).
+    polarization : array_like, optional
+        Of the shape of values: degree of polarisation of what scatters unpolarised light, 1 perpendicular to the plane of scattering.
+    elevations, clocks : array_like, optional
+        For particles that are not round and fall along -Z: the light's height over the horizon, and the place on a bow from 0 above
+        the antisolar point to π below it, radians, ascending.
     """
 
     kind: int = PhaseKind.ISOTROPIC
@@ -204,6 +209,9 @@ class Phase:
     wavelengths: object = None
     angles: object = None
     values: object = None
+    polarization: object = None
+    elevations: object = None
+    clocks: object = None
 
 
 @dataclass
@@ -312,6 +320,10 @@ class Camera:
         Left, right, bottom, top of the full frame: at distance 1 (perspective) or in metres (orthographic).
     aperture_radius : float
         0 is a pinhole.
+    polarizer : int
+        1 puts a linear polarising filter before the lens, which takes half of unpolarised light.
+    polarizer_angle : float
+        Of what it lets through, radians from the camera's X axis towards Y.
     """
 
     type: int = CameraType.PERSPECTIVE
@@ -325,6 +337,8 @@ class Camera:
     focus_distance: float = 1.0
     blade_rotation: float = 0.0
     aperture_ratio: float = 1.0
+    polarizer: int = 0
+    polarizer_angle: float = 0.0
 
 
 @dataclass

@@ -107,10 +107,22 @@ def scene_add_phase(scene: int, phase: Phase) -> int:
     if phase.values is not None:
         wavelengths = as_floats("wavelengths", phase.wavelengths, (None,))
         angles = as_floats("angles", phase.angles, (None,))
-        values = as_floats("values", phase.values, (len(wavelengths), len(angles)))
-        keep = [wavelengths, angles, values]
+        shape: tuple[int, ...] = (len(wavelengths), len(angles))
+        keep = [wavelengths, angles]
+        if phase.elevations is not None:
+            elevations, clocks = as_floats("elevations", phase.elevations, (None,)), as_floats("clocks", phase.clocks, (None,))
+            shape = (len(elevations), len(clocks), *shape)
+            struct.n_elevations, struct.n_clocks = len(elevations), len(clocks)
+            struct.elevations, struct.clocks = pointer(elevations), pointer(clocks)
+            keep += [elevations, clocks]
+        values = as_floats("values", phase.values, shape)
+        keep.append(values)
         struct.n_wavelengths, struct.n_angles = len(wavelengths), len(angles)
-        struct.wavelengths, struct.angles, struct.values = map(pointer, keep)
+        struct.wavelengths, struct.angles, struct.values = map(pointer, (wavelengths, angles, values))
+        if phase.polarization is not None:
+            polarization = as_floats("polarization", phase.polarization, shape)
+            keep.append(polarization)
+            struct.polarization = pointer(polarization)
     return checked(library().opal_scene_add_phase(scene, byref(struct)))
 
 

@@ -68,6 +68,11 @@ class PhaseStruct(ctypes.Structure):
         ("wavelengths", FloatPointer),
         ("angles", FloatPointer),
         ("values", FloatPointer),
+        ("polarization", FloatPointer),
+        ("n_elevations", c_int32),
+        ("n_clocks", c_int32),
+        ("elevations", FloatPointer),
+        ("clocks", FloatPointer),
     ]
 
 
@@ -163,6 +168,8 @@ class CameraStruct(ctypes.Structure):
         ("focus_distance", c_float),
         ("blade_rotation", c_float),
         ("aperture_ratio", c_float),
+        ("polarizer", c_int32),
+        ("polarizer_angle", c_float),
     ]
 
 

@@ -203,14 +203,22 @@ int32_t opal_scene_add_phase(opal_scene *scene, const opal_phase_desc *desc) {
         require(desc->n_wavelengths >= 1 && desc->n_angles >= 2 && desc->wavelengths && desc->angles && desc->values,
                 "A table needs at least one wavelength and two angles");
         const size_t rows = size_t(desc->n_wavelengths), columns = size_t(desc->n_angles);
-        require(all_finite(desc->wavelengths, rows) && all_finite(desc->angles, columns) &&
-                    all_finite(desc->values, rows * columns),
+        require((desc->n_elevations <= 0 || desc->elevations) && (desc->n_clocks <= 0 || desc->clocks),
+                "A table for particles that are not round needs its elevations and clocks");
+        const size_t elevations = size_t(std::max(desc->n_elevations, 0)), clocks = size_t(std::max(desc->n_clocks, 0));
+        const size_t places = std::max<size_t>(elevations, 1) * std::max<size_t>(clocks, 1);
+        require(places == 1 || (elevations > 0 && clocks > 0), "A table has both elevations and clocks, or neither");
+        require(all_finite(desc->elevations, elevations) && all_finite(desc->clocks, clocks) &&
+                    (!desc->polarization || all_finite(desc->polarization, places * rows * columns)) &&
+                    all_finite(desc->wavelengths, rows) && all_finite(desc->angles, columns) &&
+                    all_finite(desc->values, places * rows * columns),
                 "The phase table has a value that is not finite");
         require(
             std::is_sorted(desc->wavelengths, desc->wavelengths + rows) && std::is_sorted(desc->angles, desc->angles + columns),
             "The phase table's wavelengths and angles must ascend");
         scene->phases.push_back(
-            PhaseFunction::table(desc->wavelengths, desc->n_wavelengths, desc->angles, desc->n_angles, desc->values));
+            PhaseFunction::table({desc->wavelengths, desc->angles, desc->elevations, desc->clocks, desc->n_wavelengths,
+                                  desc->n_angles, desc->n_elevations, desc->n_clocks, desc->values, desc->polarization}));
         break;
       }
       default: throw BadArgument("Unknown kind of phase function");

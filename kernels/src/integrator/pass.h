@@ -28,7 +28,10 @@ struct PassContext {
     const float shift = Sampler(settings.seed, kStreamPass, uint32_t(pass)).get1d(0);
     for (int i = 0; i < kPassWavelengths; ++i)
       wavelengths[size_t(i)] = scene.colour.sample((float(i) + shift) / kPassWavelengths);
-    camera_media = media_at(scene, camera_transform(scene.camera, 0).origin());
+    const Transform camera = camera_transform(scene.camera, 0);
+    camera_media = media_at(scene, camera.origin());
+    const float angle = scene.camera.polarizer_angle;
+    polariser = {scene.camera.polarizer != 0, camera.axis(0) * std::cos(angle) + camera.axis(1) * std::sin(angle)};
   }
 
   // Number i of the pass's wavelengths is hero; its set is i mod 8, its position in the set i / 8.
@@ -43,6 +46,7 @@ struct PassContext {
   std::array<Wavelengths, kPassWavelengths> wavelengths;
   PhotonMap photons;
   MediumSet camera_media;  // what the camera is in
+  Polariser polariser;     // before its lens
 };
 
 }  // namespace opal

@@ -362,7 +362,7 @@ class CameraPath {
       alive_ = false;
       return true;
     }
-    throughput_ *= through * here.scattering * phase / (distance_pdf * phase_pdf);
+    throughput_ *= through * here.scattering * here.scattered(w_, -direction, -forward, filter()) / (distance_pdf * phase_pdf);
     path_pdf_ *= through * here.extinction * phase / (distance_pdf * phase_pdf);
     if (!throughput_.is_finite() || throughput_.is_zero()) {
       alive_ = false;
@@ -383,6 +383,9 @@ class CameraPath {
     roulette(sampler_.get1d(dimension + kDimRoulette));
     return true;
   }
+
+  // The camera's filter where the camera sees a scattering at first hand. What lights it is taken as unpolarised.
+  const Polariser *filter() const { return bounces_ == 0 ? &pass_.polariser : nullptr; }
 
   // Emission over the segment, in closed form: e (1 - exp(-sigma t)) / sigma.
   void add_emitted(const MediumHere &here, float t_end) {
@@ -415,7 +418,8 @@ class CameraPath {
     if (!(sample.visibility & OPAL_RAY_SCATTER)) return;
     const Spectrum phase = here.phase_value(w_, dot(ray_.direction, sample.wi));
     const Spectrum through = transmittance_over(here.extinction, t);
-    Spectrum contribution = throughput_ * through * here.scattering * phase * sample.radiance;
+    Spectrum contribution =
+        throughput_ * through * here.scattering * here.scattered(w_, -sample.wi, -ray_.direction, filter()) * sample.radiance;
     if (contribution.is_zero() || !contribution.is_finite()) return;
     Passage passed;
     if (!passes(p, sample, passed)) return;

@@ -108,7 +108,8 @@ bool Render::trace_camera_of(const PassContext &pass, PassBuffer &buffer, const 
   const int w = width(), h = height();
   const int tiles_x = (w + kTile - 1) / kTile, tiles_y = (h + kTile - 1) / kTile;
   const int samples = settings_.samples_per_pass;
-  const float scale = 1 / float(samples), exposure = settings_.exposure;
+  const float filter = scene_.camera.polarizer ? 0.5f : 1.0f;  // a polarising filter takes half of unpolarised light
+  const float scale = 1 / float(samples), exposure = settings_.exposure * filter;
   const float from = progress_;
   std::atomic<int64_t> done{0}, camera{0}, path{0}, shadow{0};
 

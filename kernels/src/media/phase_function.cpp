@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "media/phase_function.h"
 
+#include <cstddef>
+
 namespace opal {
 namespace {
 
@@ -27,31 +29,50 @@ float sample_rayleigh(float u) {
 
 }  // namespace
 
-PhaseFunction PhaseFunction::table(const float *wavelengths, int n_wavelengths, const float *angles, int n_angles,
-                                   const float *values) {
+void PhaseFunction::normalise(float *row, float *cumulative) const {
+  const size_t n = size_t(n_nodes_);
+  double sum = 0;
+  std::vector<double> running(n, 0.0);
+  for (size_t i = 1; i < n; ++i) {
+    sum += 0.5 * (double(row[i]) + row[i - 1]) * (double(cosines_[i]) - cosines_[i - 1]);
+    running[i] = sum;
+  }
+  const double scale = sum > 0 ? 1 / sum : 0;
+  for (size_t i = 0; i < n; ++i) {
+    row[i] = sum > 0 ? float(row[i] * scale * 0.15915494309189535) : kInv4Pi;
+    if (cumulative) cumulative[i] = sum > 0 ? float(running[i] * scale) : 0.5f * (cosines_[i] + 1);
+  }
+}
+
+PhaseFunction PhaseFunction::table(const PhaseTable &t) {
   PhaseFunction p(PhaseKind::Table, 0);
-  p.n_rows_ = n_wavelengths, p.n_nodes_ = n_angles;
-  p.wavelengths_.assign(wavelengths, wavelengths + n_wavelengths);
-  p.cosines_.resize(size_t(n_angles));
-  for (int i = 0; i < n_angles; ++i) p.cosines_[size_t(n_angles - 1 - i)] = float(std::cos(double(angles[i])));
+  const size_t rows = size_t(t.n_wavelengths), n = size_t(t.n_angles);
+  const size_t places = size_t(std::max(1, t.n_elevations)) * size_t(std::max(1, t.n_clocks));
+  p.n_rows_ = t.n_wavelengths, p.n_nodes_ = t.n_angles;
+  p.wavelengths_.assign(t.wavelengths, t.wavelengths + rows);
+  p.cosines_.resize(n);
+  for (size_t i = 0; i < n; ++i) p.cosines_[n - 1 - i] = float(std::cos(double(t.angles[i])));
   p.cosines_.front() = -1, p.cosines_.back() = 1;
-  p.values_.resize(size_t(n_wavelengths) * size_t(n_angles));
-  p.cumulative_.resize(p.values_.size());
-  for (int r = 0; r < n_wavelengths; ++r) {
-    float *row = &p.values_[size_t(r) * size_t(n_angles)];
-    float *cumulative = &p.cumulative_[size_t(r) * size_t(n_angles)];
-    for (int i = 0; i < n_angles; ++i) row[n_angles - 1 - i] = std::max(0.0f, values[size_t(r) * size_t(n_angles) + size_t(i)]);
-    double sum = 0;
-    std::vector<double> running(size_t(n_angles), 0.0);
-    for (int i = 1; i < n_angles; ++i) {
-      sum += 0.5 * (double(row[i]) + row[i - 1]) * (double(p.cosines_[size_t(i)]) - p.cosines_[size_t(i) - 1]);
-      running[size_t(i)] = sum;
-    }
-    const double scale = sum > 0 ? 1 / sum : 0;
-    for (int i = 0; i < n_angles; ++i) {
-      row[i] = sum > 0 ? float(row[i] * scale * 0.15915494309189535) : kInv4Pi;
-      cumulative[i] = sum > 0 ? float(running[size_t(i)] * scale) : 0.5f * (p.cosines_[size_t(i)] + 1);
-    }
+  const auto reversed = [&](const float *from, float least) {  // over ascending cosines
+    std::vector<float> to(places * rows * n);
+    for (size_t r = 0; r < places * rows; ++r)
+      for (size_t i = 0; i < n; ++i) to[r * n + n - 1 - i] = std::max(least, from[r * n + i]);
+    return to;
+  };
+  std::vector<float> every = reversed(t.values, 0);
+  if (t.polarization) p.degree_ = reversed(t.polarization, -1);
+  p.values_.assign(rows * n, 0.0f);
+  p.cumulative_.resize(rows * n);
+  for (size_t r = 0; r < places * rows; ++r) {
+    p.normalise(&every[r * n], nullptr);
+    float *mean = &p.values_[r % rows * n];
+    for (size_t i = 0; i < n; ++i) mean[i] += every[r * n + i];
+  }
+  for (size_t r = 0; r < rows; ++r) p.normalise(&p.values_[r * n], &p.cumulative_[r * n]);
+  if (places > 1) {
+    p.oriented_ = std::move(every);
+    p.elevations_.assign(t.elevations, t.elevations + std::max(1, t.n_elevations));
+    p.clocks_.assign(t.clocks, t.clocks + std::max(1, t.n_clocks));
   }
   return p;
 }
@@ -64,12 +85,18 @@ void PhaseFunction::rows(float nm, int &first, int &second, float &weight) const
       second > first ? (nm - wavelengths_[size_t(first)]) / (wavelengths_[size_t(second)] - wavelengths_[size_t(first)]) : 0.0f;
 }
 
-float PhaseFunction::row_value(int row, float cosine) const {
+size_t PhaseFunction::interval(float cosine, float &within) const {
   const auto it = std::upper_bound(cosines_.begin() + 1, cosines_.end() - 1, cosine);
   const size_t i = size_t(it - cosines_.begin());
-  const float *v = &values_[size_t(row) * size_t(n_nodes_)];
   const float span = cosines_[i] - cosines_[i - 1];
-  return lerp(v[i - 1], v[i], span > 0 ? saturate((cosine - cosines_[i - 1]) / span) : 0.0f);
+  within = span > 0 ? saturate((cosine - cosines_[i - 1]) / span) : 0.0f;
+  return i - 1;
+}
+
+float PhaseFunction::row_value(int row, float cosine) const {
+  float within;
+  const float *v = &values_[size_t(row) * size_t(n_nodes_) + interval(cosine, within)];
+  return lerp(v[0], v[1], within);
 }
 
 float PhaseFunction::row_sample(int row, float u) const {
@@ -105,6 +132,63 @@ Spectrum PhaseFunction::value(const Wavelengths &w, float cosine) const {
   Spectrum s;
   for (int i = 0; i < kWavelengths; ++i) s[i] = value(w.nm[i], cosine);
   return s;
+}
+
+int PhaseFunction::places(const Vec3 &light, const Vec3 &onward, size_t place[4], float weight[4]) const {
+  place[0] = 0, weight[0] = 1;
+  if (oriented_.empty()) return 1;
+  const auto between = [](const std::vector<float> &nodes, float x, size_t &first, float &t) {
+    const auto it = std::upper_bound(nodes.begin(), nodes.end(), x);
+    first = size_t(std::clamp<std::ptrdiff_t>(it - nodes.begin() - 1, 0, std::max<std::ptrdiff_t>(0, std::ptrdiff_t(nodes.size()) - 2)));
+    t = nodes.size() > 1 ? saturate((x - nodes[first]) / std::max(nodes[first + 1] - nodes[first], 1e-9f)) : 0.0f;
+  };
+  const float elevation = std::asin(clamp(-light.z, -1.0f, 1.0f));
+  const Vec3 up = Vec3{0, 0, 1} - light * light.z, side = cross(light, up), seen = -onward;
+  const float clock = std::atan2(std::abs(dot(seen, side)), dot(seen, up));
+  size_t e, c;
+  float te, tc;
+  between(elevations_, elevation, e, te);
+  between(clocks_, clock, c, tc);
+  int count = 0;
+  for (size_t k = 0; k < 4; ++k) {
+    const float part = (k / 2 ? te : 1 - te) * (k % 2 ? tc : 1 - tc);
+    if (!(part > 0)) continue;
+    place[count] = (e + k / 2) * clocks_.size() + c + k % 2;
+    weight[count++] = part;
+  }
+  return count;
+}
+
+Spectrum PhaseFunction::scattered(const Wavelengths &w, const Vec3 &light, const Vec3 &onward, const Polariser *filter) const {
+  const float cosine = dot(light, onward);
+  const bool filtered = filter && filter->present;
+  if (kind_ == PhaseKind::Rayleigh && filtered) {
+    const float degree = (1 - sqr(cosine)) / (1 + sqr(cosine));
+    return value(w, cosine) * filter->factor(degree, light, onward);
+  }
+  if (kind_ != PhaseKind::Table || (oriented_.empty() && !(filtered && !degree_.empty()))) return value(w, cosine);
+  const std::vector<float> &table = oriented_.empty() ? values_ : oriented_;
+  size_t place[4];
+  float weight[4];
+  const int n = places(light, onward, place, weight);
+  float within;
+  const size_t node = interval(cosine, within), row_size = size_t(n_nodes_);
+  // Light fully perpendicular and fully parallel pass by these; mixtures by the mixture.
+  const float passed = filtered && !degree_.empty() ? filter->factor(1, light, onward) - 1 : 0.0f;
+  Spectrum sum(0.0f);
+  for (int k = 0; k < kWavelengths; ++k) {
+    int row[2];
+    float second;
+    rows(w.nm[k], row[0], row[1], second);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < 2; ++j) {
+        const size_t at = (place[i] * size_t(n_rows_) + size_t(row[j])) * row_size + node;
+        float v = lerp(table[at], table[at + 1], within);
+        if (passed != 0) v *= 1 + passed * lerp(degree_[at], degree_[at + 1], within);
+        sum[k] += weight[i] * (j ? second : 1 - second) * v;
+      }
+  }
+  return sum;
 }
 
 Vec3 PhaseFunction::sample(float nm, const Vec3 &forward, float pick, Vec2 u, float &density) const {

@@ -3,7 +3,8 @@
 //
 // The angle is between propagation directions: cosine 1 is straight on. Four kinds: isotropic, Henyey-Greenstein (1941),
 // Rayleigh (1871, unpolarised), and tables over wavelength and angle (a rainbow's droplets). What is evaluated is what is
-// sampled: the density of sample() is value() at the hero wavelength.
+// sampled: the density of sample() is value() at the hero wavelength. Particles that are not round send light otherwise to the
+// sides than up and down: value() is then the mean over all places of a bow, still what is sampled, and scattered() the truth.
 #pragma once
 
 #include "core/spectrum.h"
@@ -12,6 +13,27 @@
 #include <vector>
 
 namespace opal {
+
+// What opal_phase_desc says of a table; sizes as there.
+struct PhaseTable {
+  const float *wavelengths = nullptr, *angles = nullptr, *elevations = nullptr, *clocks = nullptr;
+  int n_wavelengths = 0, n_angles = 0, n_elevations = 0, n_clocks = 0;
+  const float *values = nullptr, *polarization = nullptr;
+};
+
+// A linear polarising filter, by the direction of the field that it lets through. It passes half of unpolarised light, which is
+// taken off every path alike; `factor` is what it makes of light of a degree of polarisation beside that.
+struct Polariser {
+  bool present = false;
+  Vec3 axis;
+
+  // 1 + P cos(2 psi), psi between the axis, as the ray sees it, and the perpendicular of the plane of scattering.
+  float factor(float degree, const Vec3 &light, const Vec3 &onward) const {
+    const Vec3 seen = axis - onward * dot(axis, onward), perpendicular = cross(light, onward);
+    const float size = length_squared(seen) * length_squared(perpendicular);
+    return size > 1e-12f ? 1 + degree * (2 * sqr(dot(seen, perpendicular)) / size - 1) : 1.0f;
+  }
+};
 
 enum class PhaseKind : uint8_t { Isotropic, HenyeyGreenstein, Rayleigh, Table };
 
@@ -23,15 +45,15 @@ class PhaseFunction {
     return PhaseFunction(PhaseKind::HenyeyGreenstein, clamp(anisotropy, -0.999f, 0.999f));
   }
   static PhaseFunction rayleigh() { return PhaseFunction(PhaseKind::Rayleigh, 0); }
-  // values: n_wavelengths rows of n_angles, in 1/sr up to a factor (rows are normalised); wavelengths (nm) and angles
-  // (radians, from 0 to pi) ascend. Linear in the angle's cosine and in wavelength.
-  static PhaseFunction table(const float *wavelengths, int n_wavelengths, const float *angles, int n_angles,
-                             const float *values);
+  // Rows are in 1/sr up to a factor (they are normalised). Linear in the angle's cosine and in everything else.
+  static PhaseFunction table(const PhaseTable &table);
 
   // 1/sr at one wavelength (nm) for the cosine of the angle.
   float value(float nm, float cosine) const;
   // The same at every wavelength of a path.
   Spectrum value(const Wavelengths &w, float cosine) const;
+  // 1/sr for unpolarised light that goes along `light` and on along `onward`, through the camera's filter if there is one.
+  Spectrum scattered(const Wavelengths &w, const Vec3 &light, const Vec3 &onward, const Polariser *filter) const;
   // A direction to go on in, with density value(nm of the hero, cosine).
   Vec3 sample(float nm, const Vec3 &forward, float pick, Vec2 u, float &density) const;
 
@@ -43,16 +65,24 @@ class PhaseFunction {
 
   // The two rows that bracket a wavelength, and the weight of the second.
   void rows(float nm, int &first, int &second, float &weight) const;
+  // The interval of the cosines, and where in it.
+  size_t interval(float cosine, float &within) const;
   float row_value(int row, float cosine) const;
   float row_sample(int row, float u) const;  // cosine
+  void normalise(float *row, float *cumulative) const;
+  // Four corners of (elevation, clock) with weights, for light from somewhere seen from somewhere; 1 for round particles.
+  int places(const Vec3 &light, const Vec3 &onward, size_t place[4], float weight[4]) const;
 
   PhaseKind kind_ = PhaseKind::Isotropic;
   float g_ = 0;
   int n_rows_ = 0, n_nodes_ = 0;
   std::vector<float> wavelengths_;
-  std::vector<float> cosines_;     // ascending, -1 .. 1
-  std::vector<float> values_;      // n_rows_ x n_nodes_, over cosines_
-  std::vector<float> cumulative_;  // n_rows_ x n_nodes_, 0 .. 1
+  std::vector<float> cosines_;              // ascending, -1 .. 1
+  std::vector<float> values_;               // n_rows_ x n_nodes_, over cosines_
+  std::vector<float> elevations_, clocks_;  // empty for round particles
+  std::vector<float> oriented_;             // elevations x clocks x n_rows_ x n_nodes_, empty for round particles
+  std::vector<float> degree_;               // of polarisation, as oriented_ or as values_; may be empty
+  std::vector<float> cumulative_;           // n_rows_ x n_nodes_, 0 .. 1
 };
 
 }  // namespace opal

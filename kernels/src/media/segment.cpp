@@ -30,6 +30,14 @@ Spectrum MediumHere::phase_value(const Wavelengths &w, float cosine) const {
   return sum;
 }
 
+Spectrum MediumHere::scattered(const Wavelengths &w, const Vec3 &light, const Vec3 &onward, const Polariser *filter) const {
+  if (n == 1) return phase[0]->scattered(w, light, onward, filter);
+  Spectrum sum(0.0f);
+  for (int i = 0; i < n; ++i) sum += part[i] * phase[i]->scattered(w, light, onward, filter);
+  for (int k = 0; k < kWavelengths; ++k) sum[k] = scattering[k] > 0 ? sum[k] / scattering[k] : 0.0f;
+  return sum;
+}
+
 Vec3 MediumHere::sample_phase(const Wavelengths &w, const Vec3 &forward, float pick, Vec2 u, float &density) const {
   int chosen = 0;
   if (n > 1) {

@@ -15,8 +15,10 @@ struct MediumHere {
   const PhaseFunction *phase[MediumSet::kCapacity] = {};
   Spectrum part[MediumSet::kCapacity];  // of the scattering, by medium
 
-  // The phase functions' mixture, at every wavelength.
+  // The phase functions' mixture, at every wavelength: what sample_phase samples.
   Spectrum phase_value(const Wavelengths &w, float cosine) const;
+  // What is scattered of unpolarised light that goes along `light`, on along `onward`; `filter` may be null.
+  Spectrum scattered(const Wavelengths &w, const Vec3 &light, const Vec3 &onward, const Polariser *filter) const;
   // A direction to scatter into; density is phase_value at the hero.
   Vec3 sample_phase(const Wavelengths &w, const Vec3 &forward, float pick, Vec2 u, float &density) const;
   bool scatters() const { return scattering.max() > 0; }

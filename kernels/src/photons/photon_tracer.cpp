@@ -137,7 +137,7 @@ class PhotonPath {
     alive = pdf > 0 && sampler_.get1d(dimension + kDimRoulette) < albedo && ++rough_bounces_ <= settings_.max_depth;
     if (!alive) return true;
     const Spectrum phase = here.phase_value(w_, dot(forward, direction));
-    flux_ *= through * here.scattering * phase / (pdf * albedo);
+    flux_ *= through * here.scattering * here.scattered(w_, forward, direction, nullptr) / (pdf * albedo);
     path_pdf_ *= through * here.extinction * phase / pdf;
     alive = flux_.is_finite() && !flux_.is_zero();
     ++rough_events_;
