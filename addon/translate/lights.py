@@ -18,6 +18,10 @@ def _ignore(_name: str, _message: str) -> None:
     pass
 
 
+def _no_spectra(_values: Any) -> int:
+    return -1
+
+
 def visibility(obj: Any) -> Ray:
     """The kinds of ray that see an object, from its ray visibility."""
     flags = (
@@ -70,10 +74,33 @@ READERS: dict[str, Callable[[Any], dict[str, Any]]] = {
 }
 
 
+def lamp_spectrum(data: Any) -> Any:
+    """Relative spectral power of a lamp at 360 ... 830 nm; None for the light that its colour says."""
+    settings = data.opal
+    if settings.spectrum == "COLOR":
+        return None
+    from opal_kernels.optics import illuminants
+
+    if settings.spectrum == "BLACKBODY":
+        return illuminants.blackbody(settings.temperature)
+    if settings.spectrum == "LASER":
+        return illuminants.line(settings.laser_wavelength)
+    return illuminants.lamp(settings.spectrum)
+
+
+def out_of_range(data: Any, first: float, last: float) -> str:
+    """One sentence where a lamp of lines has none among the wavelengths (nm) that are rendered; else empty."""
+    lines = {"LASER": data.opal.laser_wavelength, "SODIUM": 589.3}
+    nm = lines.get(data.opal.spectrum)
+    if nm is None or first <= nm <= last:
+        return ""
+    return f"its light of {nm:.1f} nm lies outside of the {first:.0f} to {last:.0f} nm that the scene renders"
+
+
 def lamp_color(data: Any) -> tuple[float, float, float]:
-    """The tint of a lamp, its temperature included, linear Rec.709: a blackbody of luminance 1 times the colour."""
+    """The tint of a lamp, linear Rec.709: a blackbody of luminance 1 times the colour; the colour alone beside a spectrum."""
     tint = tuple(data.color)
-    if getattr(data, "use_temperature", False):
+    if getattr(data, "use_temperature", False) and data.opal.spectrum == "COLOR":
         tint = tuple(t * c for t, c in zip(tint, data.temperature_color, strict=True))
     return tint
 
@@ -99,6 +126,7 @@ def light_from_object(
     receivers: int = EVERYTHING,
     context: Any = None,
     report: Report = _ignore,
+    add_spectrum: Callable[[Any], int] = _no_spectra,
 ) -> Light | None:
     """One lamp.
 
@@ -114,6 +142,8 @@ def light_from_object(
         Handed to the node readers; None leaves node trees unread.
     report : callable
         Takes a name and a sentence for what cannot be kept.
+    add_spectrum : callable
+        Takes relative spectral power at 360 ... 830 nm, returns its number in the scene.
 
     Returns
     -------
@@ -137,7 +167,9 @@ def light_from_object(
     if power == 0.0 or not any(color):
         return None
     m = obj.matrix_world if matrix is None else matrix
+    spectrum = lamp_spectrum(data)
     return Light(
+        spectrum=-1 if spectrum is None else add_spectrum(spectrum),
         transform=[list(row) for row in m][:3],
         color=color,
         power=power,

@@ -17,7 +17,7 @@ from opal_kernels.scene import Scene
 
 from ..report import Report
 from .instances import Group, collect
-from .lights import LightLinks, light_from_object
+from .lights import LightLinks, light_from_object, out_of_range
 from .materials import Materials
 from .meshes import MeshArrays, MeshNeeds, read_mesh
 from .node_context import NodeContext
@@ -70,6 +70,7 @@ class SceneBuilder:
     ) -> None:
         self._report, self._stage = report, stage
         self.scene = Scene(threads=threads)
+        self._lamp_spectra: dict[bytes, int] = {}
         self._context = NodeContext(self.scene, report)
         self._materials = Materials(self.scene, self._context, report, _PREVIEW_ABSORPTION if preview else 1.0)
 
@@ -83,7 +84,9 @@ class SceneBuilder:
         originals: list[Any] = []
 
         def on_light(obj: Any, matrix: np.ndarray) -> None:
-            light = light_from_object(obj, matrix=matrix, context=self._context, report=self._report.add)
+            light = light_from_object(obj, matrix=matrix, context=self._context, report=self._report.add, add_spectrum=self._lamp_spectrum)
+            if sentence := out_of_range(obj.data, *depsgraph.scene_eval.opal.wavelengths):
+                self._report.add(obj.original.name, sentence)
             if light is not None:
                 snapshot.lights.append((light, obj.original.name_full))
                 originals.append(obj.original)
@@ -109,6 +112,13 @@ class SceneBuilder:
             snapshot.mesh_of_group.append(self._read_mesh(group, needs, snapshot))
         snapshot.groups = visible.groups
         return snapshot
+
+    def _lamp_spectrum(self, values: np.ndarray) -> int:
+        """The number of a lamp's spectrum; equal ones have the same, by which the kernels know how many there are."""
+        key = values.tobytes()
+        if key not in self._lamp_spectra:
+            self._lamp_spectra[key] = self.scene.add_spectrum(values)
+        return self._lamp_spectra[key]
 
     def _read_mesh(self, group: Group, needs: MeshNeeds, snapshot: Snapshot) -> int:
         key = group.mesh.as_pointer()

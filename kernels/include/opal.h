@@ -226,7 +226,7 @@ enum { OPAL_LIGHT_POINT = 0, OPAL_LIGHT_SPOT = 1, OPAL_LIGHT_SUN = 2, OPAL_LIGHT
 
 typedef struct opal_light_desc {
   int32_t type;         /* OPAL_LIGHT_* */
-  int32_t spectrum;     /* relative spectral power replacing D65 x colour, or -1 */
+  int32_t spectrum;     /* relative spectral power in place of D65, brought to D65's luminance, or -1; `color` filters it */
   float transform[12];  /* looks along its local -Z */
   float color[3];       /* linear Rec.709: tint x temperature x strength factors, without the power */
   float power;          /* W as in Blender (sun: irradiance, W/m2); exposure already applied */

@@ -14,8 +14,10 @@ from light_probe import (
     scene_with,
 )
 from opal_kernels.descriptions import LightType, World
+from opal_kernels.optics import colour, illuminants, uplift
 
 DOWN, UP = (0, 0, -1), (0, 0, 1)
+WEIGHTS = np.array([0.2126729, 0.7151522, 0.0721750])  # of Rec.709 in luminance
 TOLERANCE = 2e-3  # of the 64 wavelengths that the probe integrates over, mostly
 
 
@@ -184,24 +186,43 @@ def test_lamp_colour_comes_out_as_given():
     assert e == pytest.approx(np.array(color), rel=5e-3)
 
 
-def test_a_spectrum_of_its_own_keeps_the_luminance_of_the_lamp():
-    weights = np.array([0.2126729, 0.7151522, 0.0721750])
+@pytest.mark.parametrize("name", sorted(illuminants.LAMPS))
+def test_a_lamp_with_a_spectrum_is_as_bright_as_a_white_one_and_has_its_own_colour(name):
+    """Also one of narrow lines, in 64 wavelengths: they are sampled where the light is."""
+    spectrum = illuminants.lamp(name)
     with scene_with() as scene:
-        flat = scene.add_spectrum(np.full(471, 7.0))
-        scene.add_light(
-            lamp(
-                LightType.POINT,
-                (0, 0, 1),
-                power=4 * np.pi,
-                color=(1.0, 0.5, 0.2),
-                spectrum=flat,
-            )
-        )
+        number = scene.add_spectrum(spectrum * 7.0)
+        scene.add_light(lamp(LightType.POINT, (0, 0, 1), power=4 * np.pi, spectrum=number))
         scene.commit()
         e, _ = irradiance(scene, (0, 0, 0), UP, n=16)
-    assert weights @ e == pytest.approx(weights @ [1.0, 0.5, 0.2], rel=5e-3)
-    # PHYSICS section 5, 16: flat emission is (1.2049, 0.9482, 0.9092).
-    assert e / e[1] == pytest.approx(np.array([1.2049, 0.9482, 0.9092]) / 0.9482, rel=5e-3)
+    assert WEIGHTS @ e == pytest.approx(1.0, rel=5e-3)
+    assert e == pytest.approx(colour.rec709(spectrum), rel=5e-3, abs=0.015)
+
+
+def test_a_flat_spectrum_is_pinkish():
+    """PHYSICS section 5, 16: flat emission is (1.2049, 0.9482, 0.9092)."""
+    with scene_with() as scene:
+        flat = scene.add_spectrum(np.full(471, 7.0))
+        scene.add_light(lamp(LightType.POINT, (0, 0, 1), power=4 * np.pi, spectrum=flat))
+        scene.commit()
+        e, _ = irradiance(scene, (0, 0, 0), UP, n=16)
+    assert e == pytest.approx(np.array([1.2049, 0.9482, 0.9092]), rel=5e-3)
+
+
+def test_the_colour_of_a_lamp_with_a_spectrum_is_a_filter_before_it():
+    """Glass of any colour before a sodium lamp dims it by what the glass keeps at 589 nm."""
+    with scene_with() as scene:
+        sodium = scene.add_spectrum(illuminants.sodium())
+        seen = {}
+        for name, tint in {"white": (1, 1, 1), "red": (1, 0, 0), "blue": (0, 0, 1)}.items():
+            scene.clear_lights()
+            scene.add_light(lamp(LightType.POINT, (0, 0, 1), power=4 * np.pi, spectrum=sodium, color=tint))
+            scene.commit()
+            seen[name] = irradiance(scene, (0, 0, 0), UP, n=16)[0]
+    red, _, blue = uplift.basis()
+    assert seen["red"] == pytest.approx(colour.rec709(illuminants.sodium() * red), rel=0.01, abs=1e-3)
+    assert seen["blue"] == pytest.approx(colour.rec709(illuminants.sodium() * blue), rel=0.01, abs=1e-3)
+    assert WEIGHTS @ seen["red"] < 0.7 * WEIGHTS @ seen["white"]
 
 
 def test_uniform_world_has_the_radiance_of_its_colour_and_gives_pi_times_it():

@@ -10,14 +10,14 @@ constexpr double kXyzToRgb[3][3] = {{3.2404541621, -1.5371385128, -0.4985314096}
                                     {-0.9692660305, 1.8760108454, 0.0415560175},
                                     {0.0556434310, -0.2040259135, 1.0572251882}};
 
-// Where wavelengths are sampled: the visible-wavelength density of pbrt-v4 (Radziszewski et al. 2009), which follows
-// the eye, mixed with a little of the uniform one so that no part of the range is starved.
-double sampling_density(double nm) {
+}  // namespace
+
+// The visible-wavelength density of pbrt-v4 (Radziszewski et al. 2009), which follows the eye, mixed with a little of the
+// uniform one so that no part of the range is starved.
+double smooth_density(double nm) {
   const double c = std::cosh(0.0072 * (nm - 538.0));
   return 1.0 / (c * c) + 0.02;
 }
-
-}  // namespace
 
 void ColourTables::prepare(const opal_tables &tables, float first, float last) {
   first_nm = clamp(first, float(kTableFirst), float(kTableFirst + kTableSize - 2));
@@ -50,17 +50,44 @@ void ColourTables::prepare(const opal_tables &tables, float first, float last) {
     for (int i = 0; i < kTableSize; ++i)
       rgb_response[c][i] = float(rgb_response[c][i] / (rgb_of_d65[c] * scale * luminance_of_one));
 
-  double total = 0;
-  std::array<double, kTableSize> running{};
-  for (int i = 0; i + 1 < kTableSize; ++i) {
+  weigh({}, 1.0f);
+}
+
+void ColourTables::weigh(const std::vector<SpectralTable> &shares, float smooth_share) {
+  using Density = std::array<double, kTableSize>;
+  // The probability of each interval between nodes, by the trapezoid rule, which is exact for what is linear between them.
+  const auto mass = [&](const Density &d, int i) {
     const double nm = kTableFirst + i + 0.5;
-    running[i] = total;
-    total += nm > first_nm && nm < last_nm ? sampling_density(nm) : 0.0;
+    return nm > first_nm && nm < last_nm ? 0.5 * (d[size_t(i)] + d[size_t(i) + 1]) : 0.0;
+  };
+  const auto total = [&](const Density &d) {
+    double sum = 0;
+    for (int i = 0; i + 1 < kTableSize; ++i) sum += mass(d, i);
+    return sum;
+  };
+  Density smooth{}, mixed{};
+  for (int i = 0; i < kTableSize; ++i) smooth[size_t(i)] = smooth_density(kTableFirst + i);
+  std::vector<Density> own;
+  for (const SpectralTable &share : shares) {
+    Density d{};
+    for (size_t i = 0; i < d.size(); ++i) d[i] = double(share[i]);
+    if (total(d) > 0) own.push_back(d);
   }
-  running[kTableSize - 1] = total;
-  for (int i = 0; i < kTableSize; ++i) cdf[i] = float(running[i] / total);
-  for (int i = 0; i + 1 < kTableSize; ++i) pdf[i] = float((running[i + 1] - running[i]) / total);
-  pdf[kTableSize - 1] = 0;
+  const double of_smooth = own.empty() ? 1.0 : double(smooth_share);
+  const auto add = [&](const Density &d, double part) {
+    const double scale = part / total(d);
+    for (size_t i = 0; i < d.size(); ++i) mixed[i] += d[i] * scale;
+  };
+  add(smooth, of_smooth);
+  for (const Density &d : own) add(d, (1 - of_smooth) / double(own.size()));
+
+  const double sum = total(mixed);
+  double running = 0;
+  for (int i = 0; i < kTableSize; ++i) {
+    pdf[size_t(i)] = float(mixed[size_t(i)] / sum);
+    cdf[size_t(i)] = float(running / sum);
+    if (i + 1 < kTableSize) running += mass(mixed, i);
+  }
 }
 
 Wavelengths ColourTables::sample(float u) const {
@@ -71,12 +98,14 @@ Wavelengths ColourTables::sample(float u) const {
     // The last interval whose cumulative value is not above x, among those with any probability.
     int i = int(std::upper_bound(cdf.begin(), cdf.end(), x) - cdf.begin()) - 1;
     i = std::clamp(i, 0, kTableSize - 2);
-    while (i > 0 && pdf[i] <= 0) --i;
-    while (i < kTableSize - 2 && pdf[i] <= 0) ++i;
-    const float f = clamp((x - cdf[i]) / pdf[i], 0.0f, 1.0f);
+    while (i > 0 && cdf[i + 1] <= cdf[i]) --i;
+    while (i < kTableSize - 2 && cdf[i + 1] <= cdf[i]) ++i;
+    // Inverse of the quadratic that a linear density integrates to, in the form that does not cancel.
+    const float y = clamp((x - cdf[i]) / (cdf[i + 1] - cdf[i]), 0.0f, 1.0f), a = pdf[i], b = pdf[i + 1];
+    const float f = clamp(y * (a + b) / (a + std::sqrt(std::max(a * a + y * (b * b - a * a), 0.0f))), 0.0f, 1.0f);
     w.nm[k] = float(kTableFirst + i) + f;
-    w.pdf[k] = pdf[i];
-    const float scale = 1 / (pdf[i] * kWavelengths);
+    w.pdf[k] = lerp(a, b, f);
+    const float scale = 1 / (w.pdf[k] * kWavelengths);
     for (int c = 0; c < 3; ++c) {
       w.basis[c][k] = lerp(basis[c][i], basis[c][i + 1], f);
       w.to_rgb[c][k] = lerp(rgb_response[c][i], rgb_response[c][i + 1], f) * scale;

@@ -7,7 +7,12 @@
 #include "core/spectrum.h"
 #include "opal.h"
 
+#include <vector>
+
 namespace opal {
+
+// Where wavelengths of smooth spectra are sampled, up to a factor.
+double smooth_density(double nm);
 
 struct ColourTables {
   SpectralTable
@@ -15,12 +20,15 @@ struct ColourTables {
   SpectralTable basis[3];
   SpectralTable d65;                    // scaled to luminance 1; a spectrum of 1 has luminance 1 too
   float first_nm = 360, last_nm = 830;  // the sampled range
-  // Cumulative distribution of the wavelength density over the 470 intervals, and the density per nm.
+  // The density of sampled wavelengths: per nm at the table's nodes, linear between them; cdf at the nodes.
   SpectralTable cdf, pdf;
 
   // Prepares everything for wavelengths first..last. The response outside the range is left out, and the rest
-  // renormalised so that D65 stays white.
+  // renormalised so that D65 stays white. Wavelengths are then sampled as suits smooth spectra.
   void prepare(const opal_tables &tables, float first, float last);
+  // Samples wavelengths where the scene's light is. `shares` (not negative) are densities of their own up to a factor;
+  // each gets an equal part of what `smooth_share` leaves, so that a lamp of narrow lines is not left to chance.
+  void weigh(const std::vector<SpectralTable> &shares, float smooth_share);
   // kWavelengths equally spaced in the cumulative distribution, the hero at u.
   Wavelengths sample(float u) const;
   // Linear Rec.709 of radiance 1 at one wavelength.

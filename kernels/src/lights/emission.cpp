@@ -26,6 +26,16 @@ Vec3 triangle_normal(const EmissiveTriangle &e) { return safe_normalize(cross(e.
 float lamp_reach(const LampModel &lamp, const std::vector<EmissionTarget> &targets) {
   if (lamp.type == OPAL_LIGHT_SUN) return std::abs(lamp.intensity) * ParallelAim(lamp.axis, targets).total();
   const Emitter emitter = emitter_of(lamp);
+  if (lamp.parallel()) {  // its whole power, if the beam meets a target at all
+    const float half = std::hypot(lamp.half_u, lamp.half_v);
+    for (const EmissionTarget &target : targets) {
+      const Vec3 to_target = target.centre - lamp.position;
+      const float ahead = dot(to_target, lamp.axis);
+      if (ahead + target.radius > 0 && length_squared(to_target - lamp.axis * ahead) < sqr(target.radius + half))
+        return std::abs(lamp.intensity);
+    }
+    return 0;
+  }
   if (lamp.is_round()) return std::abs(lamp.intensity) * DirectionAim(lamp.position, emitter, targets, lamp.radius).total();
   float sum = 0;
   for (int i = 0; i < 5; ++i) {

@@ -60,6 +60,11 @@ bool describe_sun(const opal_light_desc &d, LampModel &lamp) {
 
 }  // namespace
 
+// The mean keeps saturated blue from counting for next to nothing.
+float brightness_of(const Vec3 &c) {
+  return 0.5f * std::abs(luminance(c)) + (std::abs(c.x) + std::abs(c.y) + std::abs(c.z)) / 6;
+}
+
 LampModel make_lamp(const opal_light_desc &desc) {
   LampModel lamp;
   Transform t;
@@ -75,9 +80,7 @@ LampModel make_lamp(const opal_light_desc &desc) {
   lamp.valid = lamp.is_area()                ? describe_area(desc, t, lamp)
                : lamp.type == OPAL_LIGHT_SUN ? describe_sun(desc, lamp)
                                              : describe_round(desc, t, lamp);
-  // The mean keeps saturated blue from counting for next to nothing.
-  const Vec3 c = lamp.colour;
-  lamp.brightness = 0.5f * std::abs(luminance(c)) + (std::abs(c.x) + std::abs(c.y) + std::abs(c.z)) / 6;
+  lamp.brightness = brightness_of(lamp.colour);
   lamp.valid = lamp.valid && is_finite(lamp.position) && std::isfinite(lamp.radiance) && std::isfinite(lamp.intensity) &&
                lamp.brightness > 0 && std::isfinite(lamp.brightness) && lamp.intensity != 0;
   return lamp;

@@ -47,6 +47,8 @@ struct LampModel {
 };
 
 LampModel make_lamp(const opal_light_desc &desc);
+// How much a colour counts when lamps are chosen between.
+float brightness_of(const Vec3 &colour);
 
 // What a lamp sends towards a point: the sampled direction and a scalar to be multiplied by the lamp's spectrum.
 struct LampSample {

@@ -5,8 +5,13 @@
 #include "lights/directions.h"
 #include "scene/scene.h"
 
+#include <algorithm>
+
 namespace opal {
 namespace {
+
+// What smooth spectra get where no lamp, world or face has one: enough that nothing is left without samples.
+constexpr float kLeastSmoothShare = 0.03f;
 
 Bounds lamp_box(const LampModel &lamp) {
   Bounds box;
@@ -45,17 +50,30 @@ LightBounds bounds_of(const EmissiveTriangle &t) {
   return b;
 }
 
-// Scales a lamp's own spectrum to the luminance of its colour under D65.
-SpectralTable scaled_table(const Scene &scene, const SpectralTable &relative, const Vec3 &colour) {
-  double y = 0;
-  for (int i = 0; i < kTableSize; ++i)
-    y += double(relative[size_t(i)]) *
-         luminance({scene.colour.rgb_response[0][size_t(i)], scene.colour.rgb_response[1][size_t(i)],
-                    scene.colour.rgb_response[2][size_t(i)]});
+// A lamp's own spectrum at luminance 1, seen through a filter of its colour: white glass leaves it as bright as D65 would be.
+SpectralTable filtered_table(const Scene &scene, const SpectralTable &relative, const Vec3 &colour) {
+  const float *observer_y = scene.observer_table.data() + kTableSize;
+  double y = 0, of_one = 0;
+  for (size_t i = 0; i < kTableSize; ++i) {
+    y += double(relative[i]) * double(observer_y[i]);
+    of_one += double(observer_y[i]);
+  }
   SpectralTable out;
-  const double scale = y > 0 ? luminance(colour) / y : 0;
-  for (int i = 0; i < kTableSize; ++i) out[size_t(i)] = float(relative[size_t(i)] * scale);
+  const double scale = y > 0 ? of_one / y : 0;
+  for (size_t i = 0; i < kTableSize; ++i) {
+    const float filter =
+        colour.x * scene.colour.basis[0][i] + colour.y * scene.colour.basis[1][i] + colour.z * scene.colour.basis[2][i];
+    out[i] = float(double(relative[i]) * scale) * filter;
+  }
   return out;
+}
+
+// The colour of a table under the observer, as `brightness` of a lamp wants it.
+Vec3 colour_of(const ColourTables &colour, const SpectralTable &table) {
+  Vec3 rgb;
+  for (size_t i = 0; i < kTableSize; ++i)
+    rgb += Vec3{colour.rgb_response[0][i], colour.rgb_response[1][i], colour.rgb_response[2][i]} * table[i];
+  return rgb;
 }
 
 }  // namespace
@@ -86,7 +104,9 @@ std::shared_ptr<LightTables> build_light_tables(const Scene &scene) {
     LampModel lamp = make_lamp(desc);
     if (lamp.valid && desc.spectrum >= 0 && size_t(desc.spectrum) < scene.spectra.size()) {
       lamp.table = int(t.lamp_tables.size());
-      t.lamp_tables.push_back(scaled_table(scene, scene.spectra[size_t(desc.spectrum)], lamp.colour));
+      t.lamp_tables.push_back(filtered_table(scene, scene.spectra[size_t(desc.spectrum)], lamp.colour));
+      lamp.brightness = brightness_of(colour_of(scene.colour, t.lamp_tables.back()));
+      lamp.valid = lamp.brightness > 0 && std::isfinite(lamp.brightness);
     }
     t.lamps.push_back(lamp);
     if (!lamp.valid) continue;
@@ -111,6 +131,30 @@ std::shared_ptr<LightTables> build_light_tables(const Scene &scene) {
   if (!scene.bounds.empty())
     t.to_scene.build(scene, t, {{scene.bounds.centre(), scene.bounds.radius() * 1.001f + 1e-6f}}, false);
   return tables;
+}
+
+void weigh_wavelengths(const Scene &scene, ColourTables &colour) {
+  // A lamp's table counts by what the eye and the film make of it; lamps of one spectrum count once.
+  bool smooth = scene.world.present || !scene.emissive.empty();
+  for (const Medium &medium : scene.media) smooth |= medium.emission >= 0;
+  std::vector<SpectralTable> shares;
+  std::vector<int32_t> seen;
+  for (size_t i = 0; scene.lights && i < scene.lights->lamps.size(); ++i) {
+    const LampModel &lamp = scene.lights->lamps[i];
+    if (!lamp.valid) continue;
+    if (lamp.table < 0) {
+      smooth = true;
+      continue;
+    }
+    const int32_t spectrum = scene.lamps[i].desc.spectrum;
+    if (std::find(seen.begin(), seen.end(), spectrum) != seen.end()) continue;
+    seen.push_back(spectrum);
+    SpectralTable share = scene.lights->lamp_tables[size_t(lamp.table)];
+    for (size_t k = 0; k < share.size(); ++k)
+      share[k] = std::max(share[k], 0.0f) * float(smooth_density(kTableFirst + double(k)));
+    shares.push_back(share);
+  }
+  colour.weigh(shares, smooth ? 1 / float(shares.size() + 1) : kLeastSmoothShare);
 }
 
 }  // namespace opal

@@ -225,9 +225,15 @@ void Scene::commit() {
     collect_casters(*this);
     collect_emissive(*this);
     lights = build_light_tables(*this);
+    weigh_wavelengths(*this, colour);
   }
   geometry_dirty = instances_dirty = lights_dirty = false;
   build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void Scene::set_wavelengths(float first, float last) {
+  colour.prepare(tables(), first, last);
+  weigh_wavelengths(*this, colour);
 }
 
 int64_t Scene::memory_bytes() const {

@@ -145,7 +145,7 @@ struct Scene {
   // Building (scene/build.cpp). Throws std::bad_alloc or EmbreeError.
   void commit();
   // Restricts the wavelengths that paths sample; light tables do not depend on it.
-  void set_wavelengths(float first, float last) { colour.prepare(tables(), first, last); }
+  void set_wavelengths(float first, float last);
 
   // The caller's tables, kept because the range may change.
   std::vector<float> observer_table, d65_table, basis_table;
@@ -158,5 +158,7 @@ Vec3 offset_origin(const ShadingPoint &sp, const Vec3 &direction);
 
 // Defined by lights/light_tables.cpp: everything sample_light & co need. Called by commit() when lights_dirty.
 std::shared_ptr<LightTables> build_light_tables(const Scene &scene);
+// Lets `colour` sample wavelengths where the scene's lights have their power.
+void weigh_wavelengths(const Scene &scene, ColourTables &colour);
 
 }  // namespace opal
