@@ -1,6 +1,6 @@
 # Opal. Two commands do everything on a machine with Python (3.13 or 3.11), a C++20 compiler and make:
 #
-# make render      draw the showcase; prints the path of its PNG last
+# make render      draw the showcase of all three materials; prints the path of its PNG last
 # make test        prove the rest; ARGS="tests/kernels -k fresnel" runs a part
 #
 # make zip         the extension in dist/, and .venv/ with bpy and the kernels importable
@@ -66,7 +66,7 @@ zip: build/zip.stamp $(VENV)/.kernels
 # ---- What they are for ----
 
 render: zip
-	@$(PYTHON) tools/with_extension.py examples/render_showcase.py $(ARGS)
+	@$(PYTHON) tools/with_extension.py examples/opal.py $(ARGS)
 
 test: zip
 	@$(PYTHON) -m pytest $(or $(ARGS),tests)

@@ -24,11 +24,11 @@ LEDGE = 0.30
 """Depth of the parapet, m."""
 # Species, cut, the facet it lies on, width (m), place (m), and the azimuth (degrees) towards which its table leans.
 STONES = (
-    ("RUBY", "OVAL", "main", 0.0110, (0.0480, 0.0010), -125),
-    ("EMERALD", "EMERALD", "pavilion 2", 0.0100, (0.0270, -0.0215), -70),
-    ("SAPPHIRE_BLUE", "CUSHION", "main", 0.0110, (-0.0465, 0.0080), -60),
-    ("AMETHYST", "PEAR", "main", 0.0105, (-0.0330, -0.0230), -95),
-    ("CITRINE", "TRILLION", "main", 0.0080, (0.0060, -0.0300), -110),
+    ("RUBY", "OVAL", "main", 0.0070, (0.0225, 0.0060), -125),
+    ("EMERALD", "EMERALD", "pavilion 2", 0.0062, (0.0125, -0.0055), -70),
+    ("SAPPHIRE_BLUE", "CUSHION", "main", 0.0068, (-0.0240, 0.0080), -60),
+    ("AMETHYST", "PEAR", "main", 0.0072, (-0.0165, -0.0050), -95),
+    ("CITRINE", "TRILLION", "main", 0.0056, (0.0010, -0.0090), -110),
 )
 TIME_LIMIT = 150.0
 """Of the render, s."""
@@ -36,13 +36,13 @@ TIME_LIMIT = 150.0
 
 def marble() -> bpy.types.Material:
     """Pale stone with soft grey veins."""
-    material = _scene.surface("Marble", (0.6, 0.58, 0.54), roughness=0.35)
+    material = _scene.surface("Marble", (0.3, 0.29, 0.27), roughness=0.7, specular=0.15)
     nodes, links = material.node_tree.nodes, material.node_tree.links
     shader = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
     coordinates, noise, ramp = nodes.new("ShaderNodeTexCoord"), nodes.new("ShaderNodeTexNoise"), nodes.new("ShaderNodeValToRGB")
-    noise.inputs["Scale"].default_value, noise.inputs["Detail"].default_value = 14.0, 8.0
+    noise.inputs["Scale"].default_value, noise.inputs["Detail"].default_value = 45.0, 8.0
     noise.inputs["Distortion"].default_value = 1.6
-    for stop, place, colour in zip(ramp.color_ramp.elements, (0.44, 0.56), ((0.40, 0.39, 0.38, 1), (0.66, 0.64, 0.60, 1)), strict=True):
+    for stop, place, colour in zip(ramp.color_ramp.elements, (0.44, 0.56), ((0.16, 0.155, 0.15, 1), (0.33, 0.32, 0.30, 1)), strict=True):
         stop.position, stop.color = place, colour
     links.new(coordinates.outputs["Object"], noise.inputs["Vector"])
     links.new(noise.outputs[0], ramp.inputs["Fac"])
@@ -104,7 +104,7 @@ def fountain(place: tuple) -> None:
     medium = spray.opal.medium
     medium.extinction, medium.albedo = 0.9, (0.98, 0.98, 0.98)
     medium.phase, medium.anisotropy = "HENYEY_GREENSTEIN", 0.3
-    rise = [(0.0, 2.2), (0.25, 2.25), (0.35, 3.5), (0.55, 5.5), (1.0, 7.2), (1.5, 7.6), (1.9, 6.6), (2.2, 4.0), (2.5, 1.0), (2.6, 0.6), (0.0, 0.6)]
+    rise = [(0, 15.4), (0.5, 15.2), (1.2, 14.2), (1.9, 12.0), (2.5, 8.6), (2.9, 4.6), (3.0, 1.4), (0, 1.0)]
     turned("Spray", list(reversed(rise)), spray, place)
 
 
@@ -118,7 +118,7 @@ def rain() -> None:
 
 def clouds() -> None:
     """A rain sky: lead-blue overhead, brighter towards the horizon and behind the camera."""
-    world = _scene.plain_world((1.0, 1.0, 1.0), 0.55)
+    world = _scene.plain_world((1.0, 1.0, 1.0), 0.42)
     nodes, links = world.node_tree.nodes, world.node_tree.links
     background = next(node for node in nodes if node.type == "BACKGROUND")
     coordinates, split = nodes.new("ShaderNodeTexCoord"), nodes.new("ShaderNodeSeparateXYZ")
@@ -146,7 +146,7 @@ def clouds() -> None:
 
 
 def ring_with_diamond() -> None:
-    """The ring of `ring.py`, half as large again, standing on the marble and leaning on nothing but its weight."""
+    """The ring of `ring.py` with a larger stone, standing on the marble."""
     from opal_kernels.cuts import round_brilliant
 
     before = set(bpy.context.scene.objects)
@@ -164,11 +164,11 @@ def ring_with_diamond() -> None:
     bpy.context.view_layer.update()
     parts = [obj for obj in bpy.context.scene.objects if obj not in before]
     lean = Matrix.Rotation(math.radians(24.0), 4, "X")
-    pose = Matrix.Rotation(math.radians(28.0), 4, "Z") @ Matrix.Scale(1.5, 4) @ lean
+    pose = Matrix.Rotation(math.radians(28.0), 4, "Z") @ lean
     placed = [(obj, pose @ obj.matrix_world) for obj in parts]
     lowest = min((matrix @ vertex.co).z for obj, matrix in placed for vertex in obj.data.vertices)
     for obj, matrix in placed:
-        obj.matrix_world = Matrix.Translation((-0.004, 0.012, 1e-6 - lowest)) @ matrix
+        obj.matrix_world = Matrix.Translation((-0.002, 0.006, 1e-6 - lowest)) @ matrix
 
 
 def build() -> bpy.types.Scene:
@@ -183,14 +183,16 @@ def build() -> bpy.types.Scene:
         _scene.rest_on_facet(stone, cut.names.index(facet), place, math.radians(facing))
     _scene.box("Parapet", (-1.5, -0.16, -0.4), (1.5, LEDGE - 0.16, 0.0), marble())
     land()
-    fountain((16.0, 34.0, -12.0))
+    fountain((21.0, 46.0, -12.0))
     rain()
     clouds()
     away = Vector((math.sin(SUN_AZIMUTH) * math.cos(SUN_HEIGHT), math.cos(SUN_AZIMUTH) * math.cos(SUN_HEIGHT), -math.sin(SUN_HEIGHT)))
     _scene.lamp("Sun", "SUN", -away, (0.0, 0.0, 0.0), 4.0, angle=math.radians(0.53))
-    _scene.camera((0.004, -0.105, 0.058), (0.004, 0.0, 0.052), 21.0, fstop=16.0, focus=(0.0, 0.0, 0.02))
+    _scene.lamp("Lantern", "AREA", (-0.045, 0.105, 0.060), (0.0, 0.0, 0.0), 0.60, shape="DISK", size=0.004)
+    _scene.camera((0.001, -0.058, 0.042), (0.001, 0.0, 0.0315), 21.0, fstop=22.0, focus=(0.0, 0.0, 0.02))
     scene.camera.data.clip_end = 1e4
-    scene.render.resolution_x, scene.render.resolution_y = 960, 640
+    scene.render.resolution_x, scene.render.resolution_y = 900, 720
+    scene.view_settings.exposure = 0.45
     _scene.limit(scene, 192, 400_000, TIME_LIMIT)
     return scene
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What `make render` draws: a diamond, a ruby, an emerald, a sapphire and an amethyst in the light of one small lamp.
+"""A diamond, a ruby, an emerald, a sapphire and an amethyst in the light of one small lamp.
 
 Each stone lies on a facet of its own pavilion, as loose stones do. The lamp is 4 mm wide and stands low behind them, so that what passes
 through each stone falls in front of it: its colour, and the diamond's spectra. The render ends after its time limit at the latest.
@@ -46,4 +46,4 @@ def build() -> bpy.types.Scene:
 
 
 if __name__ == "__main__":
-    _scene.run(build, "showcase")
+    _scene.run(build, "stones")
