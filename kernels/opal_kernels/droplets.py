@@ -1,78 +1,235 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A rainbow as a medium: the phase function of water drops as a table that the tracer can sample.
+"""A rainbow as a medium: the phase function of drops as a table that the tracer can sample.
 
-The diffraction lobe, half of all scattered light in a fraction of a degree round the forward direction, is left out: that light goes
-on as if nothing had happened. A medium's extinction then counts what drops take by geometry alone (PHYSICS §4, scene iii).
-The sun's disc is not folded in: the tracer samples it as a light.
+The diffraction lobe, half of all scattered light in a fraction of a degree round the forward direction, is left out unless it is asked
+for: that light goes on as if nothing had happened, and a medium's extinction then counts what drops take by geometry alone. With the
+lobe both are double: `Drops.extinction_factor`. The sun's disc is not folded in: the tracer samples it as a light.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
 from functools import lru_cache
 
 import numpy as np
 
 from .descriptions import Phase, PhaseKind
+from .table_store import TableStore
+
+# Belongs to every stored table's key: raise it when a table's numbers change.
+TABLE_VERSION = 3
 
 FIRST_NM, LAST_NM, STEP_NM = 380.0, 780.0, 10.0
-_FINE_FROM, _FINE_TO = np.radians(100.0), np.radians(170.0)
+FLAT_STEP_NM = 20.0
+_COARSE, _FINE, _FINE_FROM = np.radians(0.25), np.radians(0.05), np.radians(60.0)
+_CLOCKS = 33
+_SINGLE_SIZE = 0.02  # a narrower spread leaves ripple that the angles of a table cannot follow
+
+Progress = Callable[[float], bool | None]
 
 
-def angles() -> np.ndarray:
-    """The table's scattering angles, radians: 0.05° where bows of the first two orders can lie, 0.5° elsewhere."""
-    coarse, fine = np.radians(0.5), np.radians(0.05)
-    return np.concatenate(
-        [
-            np.arange(0.0, _FINE_FROM - fine / 2, coarse),
-            np.arange(_FINE_FROM, _FINE_TO - fine / 2, fine),
-            np.linspace(_FINE_TO, np.pi, 21),
-        ]
-    )
+@dataclass(frozen=True)
+class Drops:
+    """What a rainbow's drops are.
 
-
-@lru_cache(maxsize=16)
-def _table(theory: str, radius_um: float, spread: float, flattening: float) -> tuple[np.ndarray, np.ndarray]:
-    return _compute(theory, radius_um, spread, flattening, None)
-
-
-def _compute(
-    theory: str, radius_um: float, spread: float, flattening: float, progress: Callable[[float], bool | None] | None
-) -> tuple[np.ndarray, np.ndarray]:
-    from .optics import rainbow
-
-    wavelengths = np.arange(FIRST_NM, LAST_NM + 0.5 * STEP_NM, STEP_NM)
-    values = rainbow.phase_function(
-        theory,
-        radius_um,
-        wavelengths,
-        angles(),
-        spread,
-        diffraction=False,
-        flattening=flattening if theory == "DROPLET" else 0.0,
-        progress=progress,
-    )
-    return wavelengths, values
-
-
-def phase(theory: str, radius_um: float, spread: float = 0.05, flattening: float = 0.0) -> Phase:
-    """The phase function of drops for unpolarised light, as a table.
-
-    Parameters
+    Attributes
     ----------
     theory : str
         One of `optics.rainbow.THEORIES`.
     radius_um : float
-        Mean radius in µm.
+        Mean radius, µm, 0.1 to 5000.
     spread : float
-        Relative width of the size distribution.
+        Standard deviation of the radii over their mean, 0 to 1; 0 is a single size.
+    distribution : str
+        One of `optics.rainbow.drops.DISTRIBUTIONS`.
+    celsius, salinity : float
+        Of water: °C, and parts per thousand of salt.
+    index : float, optional
+        Of another liquid or of glass, relative to air at 589.3 nm, instead of water's.
+    dispersion : float
+        With `index`: Cauchy's second coefficient, µm².
+    diffraction : bool
+        Keep the forward lobe.
     flattening : float
-        ``DROPLET`` only: 0 spheres, 1 the shape of falling drops.
+        ``DROPLET`` alone: 0 spheres, 1 the shape of falling drops.
+    elevations : tuple of float
+        ``DROPLET`` with flattening: heights of the suns over the horizon, radians, ascending.
+    """
+
+    theory: str = "AIRY"
+    radius_um: float = 250.0
+    spread: float = 0.05
+    distribution: str = "LOG_NORMAL"
+    celsius: float = 20.0
+    salinity: float = 0.0
+    index: float | None = None
+    dispersion: float = 0.0
+    diffraction: bool = False
+    flattening: float = 0.0
+    elevations: tuple[float, ...] = ()
+
+    @property
+    def flat(self) -> bool:
+        """Whether the table depends on where the sun stands and on where one looks."""
+        return self.theory == "DROPLET" and self.flattening > 0.0
+
+    @property
+    def extinction_factor(self) -> float:
+        """Cross-section of a drop over the area of its disc."""
+        return 2.0 if self.diffraction else 1.0
+
+    def wavelengths(self) -> np.ndarray:
+        """The table's wavelengths, nm."""
+        step = FLAT_STEP_NM if self.flat else STEP_NM
+        return np.arange(FIRST_NM, LAST_NM + 0.5 * step, step)
+
+    def angles(self) -> np.ndarray:
+        """The table's scattering angles, radians: 0.05° from 60° on, where bows can lie, 0.25° before, fine in the forward lobe."""
+        fine = np.linspace(_FINE_FROM, np.pi, round((np.pi - _FINE_FROM) / _FINE) + 1)
+        if not self.diffraction:
+            return np.concatenate([np.arange(0.0, _FINE_FROM - _FINE, _COARSE), fine])
+        ring = 1.0 / (2000.0 * np.pi * self.radius_um / FIRST_NM)  # 1/x
+        lobe = np.arange(0.0, 20.0 * ring, 0.1 * ring)
+        last = min(lobe[-1], 0.5 * _FINE_FROM)
+        rings = np.geomspace(last, _FINE_FROM, max(2, int(np.log(_FINE_FROM / last) / 0.02)))
+        return np.concatenate([lobe[lobe < last], rings[:-1], fine])
+
+    def clocks(self) -> np.ndarray:
+        """Places on the bow from its top (0) to below its feet (π)."""
+        return np.linspace(0.0, np.pi, _CLOCKS)
+
+    def key(self) -> str:
+        """Everything that the table's numbers depend on, as text."""
+        return f"drops {TABLE_VERSION} {sorted(asdict(self).items())}"
+
+
+def _indices(drops: Drops, wavelengths: np.ndarray) -> np.ndarray | None:
+    if drops.index is None:
+        return None
+    return drops.index + drops.dispersion * ((1e3 / wavelengths) ** 2 - (1e3 / 589.3) ** 2)
+
+
+def _evaluate(drops: Drops, progress: Progress | None, **place: float) -> np.ndarray:
+    from .optics import rainbow
+
+    wavelengths = drops.wavelengths()
+    return rainbow.phase_function(
+        drops.theory,
+        drops.radius_um,
+        wavelengths,
+        drops.angles(),
+        drops.spread,
+        # Half a cell of the table, for ripple that lies between its angles; a thirtieth of what the sun's disc does to a variance.
+        0.5 * _FINE if drops.theory == "MIE" and drops.spread < _SINGLE_SIZE else 0.0,
+        distribution=drops.distribution,
+        celsius=drops.celsius,
+        salinity=drops.salinity,
+        index=_indices(drops, wavelengths),
+        diffraction=drops.diffraction,
+        flattening=drops.flattening if drops.flat else 0.0,
+        progress=progress,
+        **place,
+    )
+
+
+def _compute(drops: Drops, progress: Progress | None) -> np.ndarray:
+    if not drops.flat:
+        return _evaluate(drops, progress).astype(np.float32)
+    elevations = drops.elevations or (0.0,)
+    clocks = drops.clocks()
+    nodes = len(elevations) * len(clocks)
+    first = _evaluate(drops, None, sun_elevation_rad=elevations[0], clock_rad=0.0)  # refuses what cannot be
+    values = np.empty((2, len(elevations), len(clocks), *first.shape[1:]), np.float32)
+    for number in range(nodes):
+        e, c = divmod(number, len(clocks))
+
+        def told(done: float, number: int = number) -> bool | None:
+            return progress((number + done) / nodes) if progress is not None else None
+
+        values[:, e, c] = _evaluate(drops, told, sun_elevation_rad=float(elevations[e]), clock_rad=float(clocks[c]))
+    return values
+
+
+def _normalised(values: np.ndarray, angles: np.ndarray) -> np.ndarray:
+    """Scale so that what the tracer interpolates, linear in the cosine, integrates to 1 at every wavelength."""
+    mean = 0.5 * (values[0] + values[1])
+    cosines = np.cos(angles.astype(float))
+    total = np.pi * ((mean[..., 1:] + mean[..., :-1]) * (cosines[:-1] - cosines[1:])).sum(axis=-1, keepdims=True)
+    return (values / total).astype(np.float32)
+
+
+@lru_cache(maxsize=1)
+def _recent() -> dict[str, np.ndarray]:
+    return {}
+
+
+_MOST_RECENT = 8
+
+
+def table(drops: Drops, store: TableStore | None = None, progress: Progress | None = None) -> np.ndarray:
+    """The phase function of drops in two polarisations.
+
+    Parameters
+    ----------
+    drops : Drops
+    store : TableStore, optional
+        Where it is looked for before it is computed, and kept afterwards.
+    progress : callable, optional
+        Called with the fraction done while it is computed; returning False stops.
+
+    Returns
+    -------
+    array (2, n_wavelengths, n_angles)
+        Perpendicular and parallel, 1/sr. For flattened drops (2, n_elevations, n_clocks, n_wavelengths, n_angles).
 
     Raises
     ------
     ValueError
-        If an argument is out of range, in one sentence.
+        If the drops cannot be, in one sentence.
+    opal_kernels.optics.rainbow.Cancelled
+        If `progress` returned False.
     """
-    wavelengths, values = _table(theory, float(radius_um), float(spread), float(flattening))
-    return Phase(kind=PhaseKind.TABLE, wavelengths=wavelengths, angles=angles(), values=values.mean(axis=0))
+    key, recent = drops.key(), _recent()
+    values = recent.get(key)
+    if values is None:
+        values = store.read(key) if store is not None else None
+        if values is None:
+            values = _normalised(_compute(drops, progress), drops.angles())
+            if store is not None:
+                store.write(key, values)
+    recent.pop(key, None)
+    recent[key] = values
+    while len(recent) > _MOST_RECENT:
+        del recent[next(iter(recent))]
+    return values
+
+
+def phase(drops: Drops, polarization: bool = True, store: TableStore | None = None, progress: Progress | None = None) -> Phase:
+    """The phase function of drops for the tracer; parameters and errors as of `table`.
+
+    Parameters
+    ----------
+    polarization : bool
+        Tell the tracer how the light is polarised, for a camera with a filter.
+    """
+    values = table(drops, store, progress)
+    both = values[0] + values[1]
+    degree = np.divide(values[0] - values[1], both, out=np.zeros_like(both), where=both > 0) if polarization else None
+    return Phase(
+        kind=PhaseKind.TABLE,
+        wavelengths=drops.wavelengths(),
+        angles=drops.angles(),
+        values=0.5 * both,
+        polarization=degree,
+        elevations=np.asarray(drops.elevations or (0.0,)) if drops.flat else None,
+        clocks=drops.clocks() if drops.flat else None,
+    )
+
+
+def elevation_nodes(heights: Sequence[float]) -> tuple[float, ...]:
+    """Heights (radians) at which a table for flattened drops is computed: those of the suns, at most four, in whole tenths of a degree."""
+    tenths = sorted({round(np.degrees(h) * 10) for h in heights if -0.1 <= h <= np.pi / 2})
+    if len(tenths) > 4:
+        tenths = [tenths[round(i * (len(tenths) - 1) / 3)] for i in range(4)]
+    return tuple(float(np.radians(t / 10)) for t in tenths)

@@ -7,8 +7,9 @@ A theory gives one drop's phase function at one wavelength; the sum over sizes w
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 
 import numpy as np
 
@@ -29,6 +30,8 @@ from opal_kernels.optics.rainbow import (
 
 _DEFAULT_SIZES = {"AIRY": 21, "DROPLET": 21, "DESCARTES": 1, "DESCARTES_SAMPLED": 1}
 _RAY_GRID = 36001  # 0.005 degrees
+_RAYS_FROM = 60.0  # size parameter above which rays say what a drop lets straight through
+_POLL_SECONDS = 0.1  # how often a caller who watches may stop a long table
 _NEGLIGIBLE = 1e-7  # share of the cross-section under which a size is left out
 
 Theory = Callable[[np.ndarray, bool], np.ndarray]  # angles, whether they are equally spaced from 0 to pi -> (2, n_angles)
@@ -72,20 +75,26 @@ def build(
     shape = droplet.Shape(flattening, sun_elevation_rad, clock_rad)
     sun.smooth(np.zeros(3), sun_radius_rad)  # refuses an impossible sun before the work
 
+    stopping = threading.Event()
+
     def one(i: int) -> np.ndarray:
-        evaluate = _theory(theory, radii, weights, float(n[i]), float(nm[i]), diffraction, shape)
+        evaluate = _theory(theory, radii, weights, float(n[i]), float(nm[i]), diffraction, shape, stopping)
         return _seen(evaluate, angles, sun_radius_rad, _grid(theory, radii, nm[i]))
 
     result = np.empty((2, nm.size, angles.size))
     workers = threads if threads > 0 else os.cpu_count() or 1
     with ThreadPoolExecutor(min(workers, nm.size)) as pool:
         futures = {pool.submit(one, i): i for i in range(nm.size)}
+        waiting = set(futures)
         try:
-            for done, future in enumerate(as_completed(futures), 1):
-                result[:, futures[future]] = future.result()
-                if progress is not None and progress(done / nm.size) is False:
+            while waiting:
+                finished, waiting = wait(waiting, None if progress is None else _POLL_SECONDS, FIRST_COMPLETED)
+                for future in finished:
+                    result[:, futures[future]] = future.result()
+                if progress is not None and progress(1 - len(waiting) / nm.size) is False:
                     raise Cancelled("the table was cancelled")
         finally:
+            stopping.set()
             for future in futures:
                 future.cancel()
     return result
@@ -121,11 +130,20 @@ def _seen(evaluate: Theory, angles: np.ndarray, sun_radius: float, grid: int) ->
     return np.array([np.interp(angles, fine, row) for row in smoothed])
 
 
-def _theory(name: str, radii: np.ndarray, weights: np.ndarray, n: float, nm: float, diffraction: bool, shape: droplet.Shape) -> Theory:
+def _theory(
+    name: str,
+    radii: np.ndarray,
+    weights: np.ndarray,
+    n: float,
+    nm: float,
+    diffraction: bool,
+    shape: droplet.Shape,
+    stopping: threading.Event,
+) -> Theory:
     sizes = 2000 * np.pi * radii / nm
     share = weights * radii**2 / (weights * radii**2).sum()  # of the geometric cross-section
     if name == "MIE":
-        return lambda angles, uniform: _mie(angles, uniform, n, sizes, weights, share, diffraction)
+        return lambda angles, uniform: _mie(angles, uniform, n, sizes, weights, share, diffraction, stopping)
     if name == "AIRY":
         scattered = airy.Drop(n).scattered
     elif name == "DROPLET":
@@ -144,17 +162,43 @@ def _theory(name: str, radii: np.ndarray, weights: np.ndarray, n: float, nm: flo
 
 
 def _mie(
-    angles: np.ndarray, uniform: bool, n: float, sizes: np.ndarray, weights: np.ndarray, share: np.ndarray, diffraction: bool
+    angles: np.ndarray,
+    uniform: bool,
+    n: float,
+    sizes: np.ndarray,
+    weights: np.ndarray,
+    share: np.ndarray,
+    diffraction: bool,
+    stopping: threading.Event,
 ) -> np.ndarray:
     total, area = np.zeros((2, angles.size)), 0.0
     for x, weight in zip(sizes, weights, strict=True):
+        if stopping.is_set():
+            raise Cancelled("the table was cancelled")
         if uniform:
             total += weight * mie.uniform_intensities(n, x, angles.size, threads=1)
         else:
             total += weight * np.abs(np.array(mie.amplitudes(n, x, angles, threads=1))) ** 2
         area += weight * np.pi * x * x * mie.efficiencies(n, x)[1]
     phase = total / area
-    if not diffraction:  # its light is half of all; what interferes with the light passed through is cut at zero
-        lobe = sum(part * geometric.diffraction(angles, x) for part, x in zip(share, sizes, strict=True))
-        phase = np.clip(2 * phase - lobe, 0, None)
-    return phase
+    return phase if diffraction else _without_lobe(angles, phase, n, sizes, share)
+
+
+def _without_lobe(angles: np.ndarray, phase: np.ndarray, n: float, sizes: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Take the diffraction lobe, half of all light, out of Lorenz-Mie's phase function and double what remains.
+
+    Amplitudes near the forward direction are the lobe's with a little of all else, and a difference of two large numbers is
+    nothing to keep: there the rays' intensity stands, to where the lobe's mean 1/(pi^2 x theta^3) has fallen to 0.3/sr.
+    """
+    lobe = sum(part * geometric.diffraction(angles, x) for part, x in zip(share, sizes, strict=True))
+    rest = np.clip(2 * phase - lobe, 0, None)
+    x = (share * sizes).sum()
+    if x < _RAYS_FROM:
+        return rest
+    end = (1 / (0.3 * np.pi**2 * x)) ** (1 / 3)
+    near = angles < 1.5 * end
+    if near.any():
+        t = np.clip(2 * angles[near] / end - 2, 0, 1)
+        rays = background.at(angles[near], sum(background.orders(n).values()))
+        rest[:, near] += (1 - t * t * (3 - 2 * t)) * (rays - rest[:, near])
+    return rest
