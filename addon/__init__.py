@@ -3,9 +3,20 @@
 
 from __future__ import annotations
 
-from . import blender_panels, engine, light_panels, light_properties, material_panels, media_panels, panels, properties, report
+from . import (
+    blender_panels,
+    engine,
+    light_panels,
+    light_properties,
+    material_panels,
+    media_panels,
+    panels,
+    properties,
+    rainbow_panels,
+    report,
+)
 
-_MODULES = (properties, light_properties, engine, panels, material_panels, media_panels, light_panels, blender_panels)
+_MODULES = (properties, light_properties, engine, panels, material_panels, media_panels, rainbow_panels, light_panels, blender_panels)
 
 
 def register() -> None:

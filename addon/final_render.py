@@ -90,10 +90,11 @@ class _FinalRender:
                 f"{available / 2**30:.1f} GB are free: lower Resolution or render a border."
             )
 
-    def _stage(self, text: str) -> None:
+    def _stage(self, text: str, done: float = 0.0) -> None:
         if (now := time.monotonic()) - self.last_stage > 0.1:
             self.last_stage = now
             self.engine.update_stats("", text)
+            self.engine.update_progress(done)
         if self.engine.test_break():
             raise Stopped
 
@@ -122,6 +123,7 @@ class _FinalRender:
                 matrix_end=matrix_end,
                 report=self.report.add,
             )
+            builder.rain.look(camera)
             return builder.finish(snapshot, camera)
         except BaseException:
             builder.scene.close()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Material panels of media and rainbows."""
+"""Material panels of media."""
 
 from __future__ import annotations
 
@@ -45,22 +45,7 @@ class OPAL_MATERIAL_PT_medium(_MediaPanel):
         column.prop(medium, "emission_strength", text="Strength (1/m)")
 
 
-class OPAL_MATERIAL_PT_rainbow(_MediaPanel):
-    bl_label = "Rainbow"
-    kind = "RAINBOW"
-
-    def draw_settings(self, layout: Any, opal: Any) -> None:
-        rainbow = opal.rainbow
-        layout.prop(rainbow, "theory")
-        layout.prop(rainbow, "radius", text="Radius (mm)")
-        layout.prop(rainbow, "spread")
-        layout.prop(rainbow, "extinction", text="Extinction (1/m)")
-        row = layout.row()
-        row.active = rainbow.theory == "DROPLET"
-        row.prop(rainbow, "flattening")
-
-
-CLASSES = (OPAL_MATERIAL_PT_medium, OPAL_MATERIAL_PT_rainbow)
+CLASSES = (OPAL_MATERIAL_PT_medium,)
 
 
 def register() -> None:

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Settings of materials that fill a body instead of covering it: media and rainbows."""
+"""Settings of what fills a body or the world instead of covering it; rainbows have a file of their own."""
 
 from __future__ import annotations
 
 import bpy
 from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty, StringProperty
 
-from . import media_presets
+from . import media_presets, rainbow_properties
 
 
 class OpalMediumProperties(bpy.types.PropertyGroup):
@@ -145,55 +145,6 @@ class OpalMediumProperties(bpy.types.PropertyGroup):
     )
 
 
-class OpalRainbowProperties(bpy.types.PropertyGroup):
-    """Water drops in the air: with the sun behind the camera they show a rainbow."""
-
-    theory: EnumProperty(
-        name="Theory",
-        description="How the light that drops scatter is computed",
-        items=(
-            ("DESCARTES", "Descartes", "Rays alone (1637): solves for the wavelength that each angle shows"),
-            ("DESCARTES_SAMPLED", "Descartes, Sampled", "Rays alone: wavelengths weighted by their distance from the bow"),
-            ("AIRY", "Airy", "Waves near the bow (1838): supernumerary arcs; right for drops above 0.05 mm"),
-            ("MIE", "Lorenz-Mie", "Exact for spheres (1908): fogbow, corona and glory too; slow for large drops"),
-            ("DROPLET", "Droplet", "Waves traced through drops of their real shape, after Sadeghi et al. 2012"),
-        ),
-        default="AIRY",
-    )
-    radius: FloatProperty(
-        name="Radius",
-        description="Mean radius of the drops in millimetres: large drops give narrow, bright colours, fog an almost white bow",
-        default=0.25,
-        min=0.001,
-        max=5.0,
-        precision=3,
-        step=1,
-    )
-    spread: FloatProperty(
-        name="Spread",
-        description="Width of the distribution of radii relative to the mean; supernumerary arcs need narrow ones",
-        default=0.05,
-        min=0.0,
-        max=1.0,
-    )
-    extinction: FloatProperty(
-        name="Extinction",
-        description="How much light the drops take out of a beam in each metre: heavy rain has about 0.001",
-        default=0.002,
-        min=0.0,
-        soft_max=1.0,
-        precision=5,
-    )
-    flattening: FloatProperty(
-        name="Flattening",
-        description="How far drops take the shape that falling gives them: 0 are spheres, 1 is full; used by the theory Droplet alone",
-        default=0.0,
-        min=0.0,
-        max=1.0,
-        subtype="FACTOR",
-    )
-
-
 class OpalWorldProperties(bpy.types.PropertyGroup):
     """What fills the world: nothing, a medium or rain."""
 
@@ -208,7 +159,7 @@ class OpalWorldProperties(bpy.types.PropertyGroup):
         default="NONE",
     )
     medium: PointerProperty(type=OpalMediumProperties, name="Medium")
-    rainbow: PointerProperty(type=OpalRainbowProperties, name="Rainbow")
+    rainbow: PointerProperty(type=rainbow_properties.OpalRainbowProperties, name="Rainbow")
     scale_height: FloatProperty(
         name="Scale Height",
         description="Height over which the density falls to 37 %; 0 keeps it to infinity, where no sun and no sky shines through",
@@ -225,4 +176,4 @@ class OpalWorldProperties(bpy.types.PropertyGroup):
     )
 
 
-CLASSES = (OpalMediumProperties, OpalRainbowProperties, OpalWorldProperties)
+CLASSES = (OpalMediumProperties, *rainbow_properties.CLASSES, OpalWorldProperties)

@@ -17,7 +17,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import gem_properties, media_properties
+from . import gem_properties, media_properties, rainbow_properties
 
 
 class OpalSceneProperties(bpy.types.PropertyGroup):
@@ -227,7 +227,7 @@ class OpalMaterialProperties(bpy.types.PropertyGroup):
     )
     gem: PointerProperty(type=gem_properties.OpalGemProperties, name="Gem")
     medium: PointerProperty(type=media_properties.OpalMediumProperties, name="Medium")
-    rainbow: PointerProperty(type=media_properties.OpalRainbowProperties, name="Rainbow")
+    rainbow: PointerProperty(type=rainbow_properties.OpalRainbowProperties, name="Rainbow")
 
 
 CLASSES = (
@@ -235,6 +235,7 @@ CLASSES = (
     OpalViewLayerProperties,
     *gem_properties.CLASSES,
     *media_properties.CLASSES,
+    *rainbow_properties.CAMERA_CLASSES,
     OpalMaterialProperties,
 )
 _OWNERS = (
@@ -242,6 +243,7 @@ _OWNERS = (
     (bpy.types.ViewLayer, OpalViewLayerProperties),
     (bpy.types.Material, OpalMaterialProperties),
     (bpy.types.World, media_properties.OpalWorldProperties),
+    (bpy.types.Camera, rainbow_properties.OpalCameraProperties),
 )
 
 

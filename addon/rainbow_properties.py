@@ -37,8 +37,9 @@ class OpalRainbowProperties(bpy.types.PropertyGroup):
         name="Radius",
         description="Mean radius of the drops in millimetres: large drops give narrow, bright colours, fog an almost white bow",
         default=0.25,
-        min=0.001,
-        max=5.0,
+        min=0.0,
+        soft_min=0.001,
+        soft_max=5.0,
         precision=3,
         step=1,
     )
@@ -59,7 +60,7 @@ class OpalRainbowProperties(bpy.types.PropertyGroup):
         description="Width of the distribution of radii relative to the mean; supernumerary arcs need narrow ones",
         default=0.05,
         min=0.0,
-        max=1.0,
+        soft_max=1.0,
     )
     extinction: FloatProperty(
         name="Extinction",

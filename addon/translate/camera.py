@@ -58,6 +58,9 @@ def _lens(camera_object: Any, scene: Any, matrix: Any, report: Report) -> tuple[
         "clip_start": data.clip_start,
         "clip_end": data.clip_end,
     }
+    opal = getattr(data, "opal", None)
+    if opal is not None and opal.polarizer:
+        fields |= {"polarizer": 1, "polarizer_angle": opal.polarizer_angle}
     if data.dof.use_dof:
         fields |= {
             "aperture_radius": optics.aperture_radius(data.dof.aperture_fstop, None if orthographic else data.lens),

@@ -13,7 +13,7 @@ from opal_kernels.scene import Scene
 from .. import presets
 from ..nodes import compile_material, compile_missing
 from ..report import Report
-from . import media
+from . import media, rainbow
 
 
 class Materials:
@@ -27,12 +27,14 @@ class Materials:
         Handed to the node readers.
     report : Report
         Told what the node readers could not keep.
+    rain : Rain
+        Makes media of rainbows.
     absorption_scale : float
         Factor on the absorption of gems: below 1 they look like smaller stones.
     """
 
-    def __init__(self, scene: Scene, context: Any, report: Report, absorption_scale: float = 1.0) -> None:
-        self._scene, self._context, self._report = scene, context, report
+    def __init__(self, scene: Scene, context: Any, report: Report, rain: rainbow.Rain, absorption_scale: float = 1.0) -> None:
+        self._scene, self._context, self._report, self._rain = scene, context, report, rain
         self._absorption_scale = absorption_scale
         self._numbers: dict[int, int] = {}
 
@@ -70,7 +72,7 @@ class Materials:
             if settings.kind == "MEDIUM":
                 medium = media.add_medium(self._scene, settings.medium)
             else:
-                medium = media.add_rainbow(self._scene, settings.rainbow)
+                medium = self._rain.add(settings.rainbow)
         except ValueError as error:
             self._report.add(name, f"{error} The body is rendered empty.")
             medium = -1

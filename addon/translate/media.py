@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Media and rainbows as media of the kernels' scene."""
+"""Media as media of the kernels' scene."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from opal_kernels import droplets
 from opal_kernels.descriptions import Phase, PhaseKind
 from opal_kernels.optics import uplift
 from opal_kernels.scene import Scene
@@ -18,15 +17,3 @@ def add_medium(scene: Scene, medium: Any) -> int:
     if medium.emission_strength > 0.0 and max(medium.emission_color) > 0.0:
         emission = uplift.emission(tuple(medium.emission_color)) * medium.emission_strength
     return scene.add_medium(medium.extinction, uplift.reflectance(tuple(medium.albedo)), phase, emission)
-
-
-def add_rainbow(scene: Scene, rainbow: Any) -> int:
-    """Adds what `OpalRainbowProperties` says; returns the medium's number.
-
-    Raises
-    ------
-    ValueError
-        If the theory cannot hold the drops, in one sentence.
-    """
-    phase = droplets.phase(rainbow.theory, rainbow.radius * 1000.0, rainbow.spread, rainbow.flattening)
-    return scene.add_medium(rainbow.extinction, 1.0, phase)

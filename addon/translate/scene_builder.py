@@ -21,6 +21,7 @@ from .lights import LightLinks, light_from_object, out_of_range
 from .materials import Materials
 from .meshes import MeshArrays, MeshNeeds, read_mesh
 from .node_context import NodeContext
+from .rainbow import Rain
 from .world import world_from_scene
 
 # A stone of 6.5 mm, one carat of diamond, for the ball of 2 m in Blender's preview.
@@ -42,7 +43,7 @@ class Snapshot:
     lights: list[tuple[Light, str]] = field(default_factory=list)
 
 
-def _ignore_stage(_text: str) -> None:
+def _ignore_stage(_text: str, _done: float = 0.0) -> None:
     pass
 
 
@@ -56,7 +57,7 @@ class SceneBuilder:
     threads : int
         0 takes every core.
     stage : callable
-        Called with a few words before each step; may raise `Stopped`.
+        Called with a few words before each step, and with the fraction done in long ones; may raise `Stopped`.
     preview : bool
         Gems absorb as stones of usual size do, not as the boulders that Blender's preview shows.
     """
@@ -65,14 +66,15 @@ class SceneBuilder:
         self,
         report: Report,
         threads: int = 0,
-        stage: Callable[[str], None] = _ignore_stage,
+        stage: Callable[..., None] = _ignore_stage,
         preview: bool = False,
     ) -> None:
         self._report, self._stage = report, stage
         self.scene = Scene(threads=threads)
         self._lamp_spectra: dict[bytes, int] = {}
         self._context = NodeContext(self.scene, report)
-        self._materials = Materials(self.scene, self._context, report, _PREVIEW_ABSORPTION if preview else 1.0)
+        self.rain = Rain(self.scene, report, stage)
+        self._materials = Materials(self.scene, self._context, report, self.rain, _PREVIEW_ABSORPTION if preview else 1.0)
 
     def read(self, depsgraph: Any) -> Snapshot:
         """Reads everything that is seen: instances, lamps, world, materials and meshes."""
@@ -98,6 +100,7 @@ class SceneBuilder:
             self._report.add(name, sentence)
 
         self._stage("Reading materials")
+        self.rain.begin([light for light, _ in snapshot.lights])
         override = getattr(depsgraph.view_layer_eval, "world_override", None)  # since Blender 5
         world, problems = world_from_scene(override or depsgraph.scene_eval.world, self._context)
         self._context.note(problems)

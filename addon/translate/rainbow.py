@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rainbows as media of the kernels' scene: drops from properties, tables from the store, and what keeps a bow out of sight."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from opal_kernels import droplets
+from opal_kernels.descriptions import Light, LightType
+from opal_kernels.optics.rainbow import sight
+from opal_kernels.scene import Scene
+
+from .. import rainbow_tables
+from ..report import Report
+
+
+def drops_of(rainbow: Any, elevations: Sequence[float] = ()) -> droplets.Drops:
+    """What `OpalRainbowProperties` says of the drops.
+
+    Parameters
+    ----------
+    rainbow : OpalRainbowProperties
+    elevations : sequence of float
+        Heights of the suns, radians: flattened drops look different under each.
+    """
+    single = rainbow.distribution == "SINGLE"
+    custom = rainbow.liquid == "CUSTOM"
+    flattening = rainbow.flattening if rainbow.theory == "DROPLET" else 0.0
+    return droplets.Drops(
+        theory=rainbow.theory,
+        radius_um=round(rainbow.radius * 1000.0, 4),
+        spread=0.0 if single else round(rainbow.spread, 6),
+        distribution="LOG_NORMAL" if single else rainbow.distribution,
+        celsius=20.0 if custom else round(rainbow.temperature, 3),
+        salinity=round(rainbow.salinity, 3) if rainbow.liquid == "SEA_WATER" else 0.0,
+        index=round(rainbow.index, 6) if custom else None,
+        dispersion=round(rainbow.index_dispersion, 7) if custom else 0.0,
+        diffraction=rainbow.diffraction,
+        flattening=round(flattening, 5),
+        elevations=droplets.elevation_nodes(elevations) if flattening > 0.0 else (),
+    )
+
+
+class Rain:
+    """Makes the media of rainbows.
+
+    Parameters
+    ----------
+    scene : Scene
+        Takes the media.
+    report : Report
+        Told of damaged tables and of what keeps a bow out of sight.
+    stage : callable
+        Takes a few words and the fraction done; may raise to stop.
+    """
+
+    def __init__(self, scene: Scene, report: Report, stage: Callable[..., None]) -> None:
+        self._scene, self._report, self._stage = scene, report, stage
+        self._lights: list[Light] = []
+        self.present = False
+
+    def begin(self, lights: Sequence[Light]) -> None:
+        """The lamps of the scene, as they were read."""
+        self._lights = list(lights)
+
+    def _suns(self) -> list[np.ndarray]:
+        """Directions to the suns, unit vectors."""
+        suns = [light for light in self._lights if light.type == LightType.SUN]
+        return [axis / np.linalg.norm(axis) for axis in (np.asarray(sun.transform, float)[:3, 2] for sun in suns)]
+
+    def add(self, rainbow: Any) -> int:
+        """Adds what `OpalRainbowProperties` says; returns the medium's number.
+
+        Raises
+        ------
+        ValueError
+            If the theory cannot hold the drops, in one sentence.
+        """
+        drops, phase = self.phase(rainbow)
+        return self._scene.add_medium(rainbow.extinction * drops.extinction_factor, 1.0, phase)
+
+    def phase(self, rainbow: Any) -> tuple[droplets.Drops, Any]:
+        """The drops and their phase function; errors as `add`."""
+        drops = drops_of(rainbow, [float(np.arcsin(np.clip(sun[2], -1.0, 1.0))) for sun in self._suns()])
+
+        def told(done: float) -> None:
+            self._stage(f"Computing the rainbow's drops: {done:.0%}", done)
+
+        store = rainbow_tables.store(lambda sentence: self._report.add("Rainbow", sentence))
+        phase = droplets.phase(drops, rainbow.polarization, store, told)
+        self.present = True
+        return drops, phase
+
+    def look(self, camera: Any) -> None:
+        """Says in the report why the camera sees no bow, where there is rain and it cannot see one.
+
+        Parameters
+        ----------
+        camera : opal_kernels.descriptions.Camera
+        """
+        if not self.present:
+            return
+        others = any(light.type != LightType.SUN for light in self._lights)
+        for sentence in sight.warnings(self._suns(), sight.View.of(camera), lamps=others):
+            self._report.add("Rainbow", sentence)
