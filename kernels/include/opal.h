@@ -104,12 +104,50 @@ typedef struct opal_phase_desc {
 
 OPAL_EXPORT int32_t opal_scene_add_phase(opal_scene *scene, const opal_phase_desc *phase);
 
-/* Spectra from opal_scene_add_spectrum, -1 for none. */
+/* A grid of voxels, kept as sparse bricks: what is 0 takes no memory. Voxel (i, j, k) is a sample at that place of index space,
+ * trilinear between samples, 0 from one voxel beyond the grid on. */
+typedef struct opal_grid_desc {
+  int32_t size[3];     /* voxels along x, y, z, each 1 .. 16384 */
+  int32_t channels;    /* 1, or 3 for colours (linear Rec.709) */
+  float transform[12]; /* index space to the object's space (to world space for the world's medium) */
+} opal_grid_desc;
+
+/* What was wrong with the values of a block; each was taken as 0. */
+typedef struct opal_grid_faults {
+  int64_t not_finite, negative;
+} opal_grid_faults;
+
+/* Adds a grid of zeros. Fails with OPAL_ERROR_MEMORY, naming the size, where even the table of bricks does not fit. */
+OPAL_EXPORT int32_t opal_scene_add_grid(opal_scene *scene, const opal_grid_desc *grid);
+/* Writes size[0] x size[1] x size[2] voxels from `origin` on: values[x][y][z][channel]. *faults (may be NULL) is added to. */
+OPAL_EXPORT int32_t opal_scene_set_grid_block(opal_scene *scene, int32_t grid, const int32_t origin[3], const int32_t size[3],
+                                              const float *values, opal_grid_faults *faults);
+
+enum { OPAL_DENSITY_HOMOGENEOUS = 0, OPAL_DENSITY_NOISE = 1, OPAL_DENSITY_GRID = 2, OPAL_DENSITY_HEIGHT = 3 };
+/* What the emission spectrum is multiplied by. */
+enum { OPAL_EMISSION_AS_DENSITY = 0, OPAL_EMISSION_EVERYWHERE = 1, OPAL_EMISSION_GRID = 2 };
+
+/* A medium. Spectra come from opal_scene_add_spectrum, -1 for none; grids are 1 + a number from opal_scene_add_grid, 0 for
+ * none. At a place p of the object's space extinction and scattering are the spectra times the density at p, which is
+ *   HOMOGENEOUS  1;
+ *   NOISE        clamp(1/2 + contrast (n - 1/2), 0, 1) of fractal gradient noise n in [0, 1] with lumps of noise_scale;
+ *   GRID         the value of density_grid;
+ *   HEIGHT       exp(-(z - base_height) / scale_height) above base_height, 1 below;
+ * plus the colours that scattering_grid and absorption_grid hold (1/m); emission_grid adds radiance per metre. */
 typedef struct opal_medium_desc {
   int32_t extinction; /* sigma_t, 1/m */
   int32_t scattering; /* sigma_s, 1/m */
   int32_t emission;   /* radiance per metre */
   int32_t phase;      /* from opal_scene_add_phase, -1: isotropic */
+  int32_t density;    /* OPAL_DENSITY_* */
+  int32_t density_grid;
+  int32_t emission_density; /* OPAL_EMISSION_* */
+  int32_t emission_density_grid;
+  int32_t scattering_grid, absorption_grid, emission_grid; /* of 3 channels */
+  uint32_t noise_seed;
+  float noise_scale, noise_detail, noise_contrast; /* object space; octaves 0..15; >= 0 */
+  float scale_height, base_height;                 /* object space */
+  int32_t reserved;
 } opal_medium_desc;
 
 OPAL_EXPORT int32_t opal_scene_add_medium(opal_scene *scene, const opal_medium_desc *medium);

@@ -92,6 +92,23 @@ class PhaseKind(IntEnum):
     TABLE = 3
 
 
+class Density(IntEnum):
+    """What a medium's extinction and scattering are multiplied by."""
+
+    HOMOGENEOUS = 0
+    NOISE = 1
+    GRID = 2
+    HEIGHT = 3
+
+
+class EmissionDensity(IntEnum):
+    """What a medium's emission is multiplied by."""
+
+    AS_DENSITY = 0
+    EVERYWHERE = 1
+    GRID = 2
+
+
 class Carry(IntEnum):
     """Which light the photons bring; the camera's paths take the rest."""
 
@@ -216,7 +233,7 @@ class Phase:
 
 @dataclass
 class Medium:
-    """A homogeneous participating medium, by numbers that the scene gave.
+    """A participating medium, by numbers that the scene gave.
 
     Attributes
     ----------
@@ -226,12 +243,37 @@ class Medium:
         Spectrum of radiance per metre; -1 is none.
     phase : int
         Phase function; -1 is isotropic.
+    density : Density
+        What extinction and scattering are multiplied by; see ``opal_medium_desc``.
+    emission_density : EmissionDensity
+        What the emission is multiplied by.
+    density_grid, emission_density_grid : int
+        1 + a grid of one channel; 0 is none.
+    scattering_grid, absorption_grid, emission_grid : int
+        1 + a grid of three channels that adds to the coefficients; 0 is none.
+    noise_seed, noise_scale, noise_detail, noise_contrast
+        Of procedural density: lumps of this size in object space, octaves, and how sharply they part.
+    scale_height, base_height : float
+        Of density that falls with height.
     """
 
     extinction: int = -1
     scattering: int = -1
     emission: int = -1
     phase: int = -1
+    density: int = Density.HOMOGENEOUS
+    density_grid: int = 0
+    emission_density: int = EmissionDensity.AS_DENSITY
+    emission_density_grid: int = 0
+    scattering_grid: int = 0
+    absorption_grid: int = 0
+    emission_grid: int = 0
+    noise_seed: int = 0
+    noise_scale: float = 1.0
+    noise_detail: float = 0.0
+    noise_contrast: float = 1.0
+    scale_height: float = 1.0
+    base_height: float = 0.0
 
 
 @dataclass

@@ -114,8 +114,28 @@ class Scene:
         """Replaces a material; `commit` afterwards."""
         binding.scene_update_material(self.handle, index, program, gem, flags, medium)
 
-    def add_medium(self, extinction: Any, albedo: Any = 1.0, phase: Phase | None = None, emission: Any = None) -> int:
-        """Adds a homogeneous medium from spectra.
+    def add_grid(self, values: Any, transform: Any) -> int:
+        """Adds a grid of voxels, dense; `binding.scene_add_grid` and `scene_set_grid_block` take it in parts.
+
+        Parameters
+        ----------
+        values : array_like
+            (x, y, z), or (x, y, z, 3) for colours; what is not finite or is negative becomes 0.
+        transform : array_like
+            (3, 4) or (4, 4), index space to the object's: where voxel (i, j, k) lies.
+
+        Returns
+        -------
+        int
+            The grid's number; media name it as 1 + number.
+        """
+        values = np.asarray(values, np.float32)
+        grid = binding.scene_add_grid(self.handle, values.shape[:3], transform, 3 if values.ndim == 4 else 1)
+        binding.scene_set_grid_block(self.handle, grid, values)
+        return grid
+
+    def add_medium(self, extinction: Any, albedo: Any = 1.0, phase: Phase | None = None, emission: Any = None, **fields: Any) -> int:
+        """Adds a medium from spectra.
 
         Parameters
         ----------
@@ -127,6 +147,8 @@ class Scene:
             None is isotropic.
         emission : float or array_like, optional
             Radiance per metre, likewise.
+        **fields
+            Further fields of `Medium`: density, grids, noise.
 
         Returns
         -------
@@ -134,7 +156,8 @@ class Scene:
             The medium's number, for `add_material` and `set_world_medium`.
         """
         extinction = np.broadcast_to(np.asarray(extinction, np.float64), (471,))
-        medium = Medium(self.add_spectrum(extinction), self.add_spectrum(extinction * np.asarray(albedo, np.float64)))
+        scattering = extinction * np.asarray(albedo, np.float64)
+        medium = Medium(self.add_spectrum(extinction), self.add_spectrum(scattering), **fields)
         if emission is not None:
             medium.emission = self.add_spectrum(np.broadcast_to(np.asarray(emission, np.float64), (471,)))
         if phase is not None:

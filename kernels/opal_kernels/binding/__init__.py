@@ -18,6 +18,7 @@ from .render import (
     render_progress,
 )
 from .scene import (
+    scene_add_grid,
     scene_add_image,
     scene_add_instances,
     scene_add_light,
@@ -33,6 +34,7 @@ from .scene import (
     scene_get_statistics,
     scene_intersect,
     scene_set_camera,
+    scene_set_grid_block,
     scene_set_transforms,
     scene_set_world,
     scene_set_world_medium,
@@ -63,6 +65,7 @@ __all__ = [
     "scene_add_instances",
     "scene_add_light",
     "scene_add_material",
+    "scene_add_grid",
     "scene_add_medium",
     "scene_add_mesh",
     "scene_add_phase",
@@ -76,6 +79,7 @@ __all__ = [
     "scene_set_camera",
     "scene_set_transforms",
     "scene_set_world",
+    "scene_set_grid_block",
     "scene_set_world_medium",
     "scene_update_material",
 ]

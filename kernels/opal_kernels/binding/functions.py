@@ -9,6 +9,8 @@ from typing import Any
 from .structures import (
     CameraStruct,
     FloatPointer,
+    GridFaultsStruct,
+    GridStruct,
     ImageStruct,
     InstancesStruct,
     IntPointer,
@@ -34,6 +36,11 @@ SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "opal_scene_add_spectrum": (c_int32, [c_void_p, FloatPointer]),
     "opal_scene_add_phase": (c_int32, [c_void_p, POINTER(PhaseStruct)]),
     "opal_scene_add_medium": (c_int32, [c_void_p, POINTER(MediumStruct)]),
+    "opal_scene_add_grid": (c_int32, [c_void_p, POINTER(GridStruct)]),
+    "opal_scene_set_grid_block": (
+        c_int32,
+        [c_void_p, c_int32, IntPointer, IntPointer, FloatPointer, POINTER(GridFaultsStruct)],
+    ),
     "opal_scene_set_world_medium": (c_int32, [c_void_p, c_int32]),
     "opal_scene_add_material": (c_int32, [c_void_p, POINTER(MaterialStruct)]),
     "opal_scene_update_material": (c_int32, [c_void_p, c_int32, POINTER(MaterialStruct)]),

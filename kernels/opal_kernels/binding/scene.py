@@ -17,6 +17,8 @@ from .structures import (
     AttributeStruct,
     CameraStruct,
     GemStruct,
+    GridFaultsStruct,
+    GridStruct,
     ImageStruct,
     InstancesStruct,
     IntPointer,
@@ -129,6 +131,60 @@ def scene_add_phase(scene: int, phase: Phase) -> int:
 def scene_add_medium(scene: int, medium: Medium) -> int:
     """Adds a medium, made of spectra and a phase function of this scene, and returns its number."""
     return checked(library().opal_scene_add_medium(scene, byref(fill(MediumStruct(), medium))))
+
+
+def scene_add_grid(scene: int, size: Sequence[int], transform: Any, channels: int = 1) -> int:
+    """Adds a grid of zeros and returns its number.
+
+    Parameters
+    ----------
+    size : sequence of int
+        Voxels along x, y and z.
+    transform : array_like
+        (3, 4) or (4, 4): index space to the space of the object that holds the medium. Voxel (i, j, k) is a sample at (i, j, k).
+    channels : int
+        1, or 3 for colours.
+
+    Raises
+    ------
+    OpalError
+        Naming the size, if the grid does not fit into memory.
+    """
+    matrix = np.asarray(transform, np.float64)[:3]
+    if matrix.shape != (3, 4) or not np.isfinite(matrix).all():
+        raise OpalError("The grid's transform takes 3 x 4 finite numbers.")
+    struct = GridStruct((c_int32 * 3)(*map(int, size)), int(channels), (c_float * 12)(*matrix.ravel().tolist()))
+    return checked(library().opal_scene_add_grid(scene, byref(struct)))
+
+
+def scene_set_grid_block(scene: int, grid: int, values: Any, origin: Sequence[int] = (0, 0, 0)) -> tuple[int, int]:
+    """Writes a block of a grid.
+
+    Parameters
+    ----------
+    values : array_like
+        (x, y, z) or, for colours, (x, y, z, 3). What is not finite or is negative becomes 0.
+    origin : sequence of int
+        The block's first voxel.
+
+    Returns
+    -------
+    (int, int)
+        How many values were not finite, and how many were negative.
+    """
+    values = np.asarray(values)
+    values = as_floats("values", values, (None,) * values.ndim, finite=False)
+    if values.ndim not in {3, 4}:
+        raise OpalError("A block of voxels has three axes, or four with colours.")
+    size = np.array(values.shape[:3], np.int32)
+    first = np.array(origin, np.int32)
+    faults = GridFaultsStruct()
+    checked(
+        library().opal_scene_set_grid_block(
+            scene, grid, first.ctypes.data_as(IntPointer), size.ctypes.data_as(IntPointer), pointer(values), byref(faults)
+        )
+    )
+    return int(faults.not_finite), int(faults.negative)
 
 
 def scene_set_world_medium(scene: int, medium: int) -> None:

@@ -77,7 +77,34 @@ class PhaseStruct(ctypes.Structure):
 
 
 class MediumStruct(ctypes.Structure):
-    _fields_ = [("extinction", c_int32), ("scattering", c_int32), ("emission", c_int32), ("phase", c_int32)]
+    _fields_ = [
+        ("extinction", c_int32),
+        ("scattering", c_int32),
+        ("emission", c_int32),
+        ("phase", c_int32),
+        ("density", c_int32),
+        ("density_grid", c_int32),
+        ("emission_density", c_int32),
+        ("emission_density_grid", c_int32),
+        ("scattering_grid", c_int32),
+        ("absorption_grid", c_int32),
+        ("emission_grid", c_int32),
+        ("noise_seed", c_uint32),
+        ("noise_scale", c_float),
+        ("noise_detail", c_float),
+        ("noise_contrast", c_float),
+        ("scale_height", c_float),
+        ("base_height", c_float),
+        ("reserved", c_int32),
+    ]
+
+
+class GridStruct(ctypes.Structure):
+    _fields_ = [("size", c_int32 * 3), ("channels", c_int32), ("transform", c_float * 12)]
+
+
+class GridFaultsStruct(ctypes.Structure):
+    _fields_ = [("not_finite", c_int64), ("negative", c_int64)]
 
 
 class AttributeStruct(ctypes.Structure):
@@ -237,6 +264,8 @@ STRUCTURES = {
     "opal_gem_desc": GemStruct,
     "opal_phase_desc": PhaseStruct,
     "opal_medium_desc": MediumStruct,
+    "opal_grid_desc": GridStruct,
+    "opal_grid_faults": GridFaultsStruct,
     "opal_material_desc": MaterialStruct,
     "opal_attribute_desc": AttributeStruct,
     "opal_mesh_desc": MeshStruct,

@@ -24,6 +24,20 @@ struct LastEvent {
   bool transmissive = false;
   int32_t light_group = -1;
   float pdf = 0;  // hero's, of the direction
+  // In a medium that varies: light was also looked for at equiangular distances, with this density relative to all others', and
+  // the phase function shares the rest with the connection from here.
+  float elsewhere = 0;
+  Spectrum phase{0.0f};
+
+  // The share, of light from a direction, that is not left to equiangular distances.
+  Spectrum share(const Spectrum &phase_value, float light_pdf) const {
+    Spectrum s(1.0f);
+    for (int i = 0; i < kWavelengths; ++i) {
+      const float here = phase_value[i] + light_pdf;
+      if (elsewhere > 0 && light_pdf > 0) s[i] = here / (here + elsewhere * light_pdf);
+    }
+    return s;
+  }
 };
 
 class CameraPath {
@@ -137,13 +151,14 @@ class CameraPath {
     } else if (bounces_ > 0 && brought(source)) {
       return;
     }
-    Spectrum pdf = path_pdf_;
+    Spectrum pdf = path_pdf_, share(1.0f);
     if (last_.light_was_sampled && source.kind != SourceKind::None) {
       const float p = light_pdf(scene_, source, last_.p, last_.normal, last_.transmissive, last_.light_group, ray_.direction,
                                 distance, normal, point);
       if (p > 0) pdf += previous_pdf_ * (p / last_.pdf);
+      if (last_.elsewhere > 0) share = last_.share(last_.phase, p);
     }
-    add(throughput_ * radiance / pdf.average(), last_.event == EventClass::Sharp && rough_events_ > 0);
+    add(throughput_ * share * radiance / pdf.average(), last_.event == EventClass::Sharp && rough_events_ > 0);
   }
 
   // ---- Scattering ----
@@ -282,20 +297,20 @@ class CameraPath {
     Spectrum contribution = throughput_ * f * sample.radiance;
     if (contribution.is_zero() || !contribution.is_finite()) return;
     Passage through;
-    if (!passes(offset_origin(sp, sample.wi), sample, through)) return;
-    Spectrum pdf = path_pdf_ * sample.pdf;
-    if (!sample.dirac) pdf += path_pdf_ * value.pdf * through.medium;
+    if (!passes(offset_origin(sp, sample.wi), sample, dimension + kDimLight, through)) return;
+    Spectrum pdf = path_pdf_ * through.light_pdf * sample.pdf;
+    if (!sample.dirac) pdf += path_pdf_ * value.pdf * through.path_pdf;
     contribution *= uplift(through.surfaces, w_) * through.medium / pdf.average();
     add_scattered(contribution, value.sharp.sum() > value.rough.sum() && rough_events_ > 0);
   }
 
   // What of a light sample arrives; false: nothing.
-  bool passes(const Vec3 &origin, const LightSample &sample, Passage &through) {
+  bool passes(const Vec3 &origin, const LightSample &sample, uint32_t dimension, Passage &through) {
     if (!sample.cast_shadow) return true;
     const Ray shadow{origin, sample.wi, 0, std::isfinite(sample.distance) ? sample.distance * (1 - 1e-5f) : kInfinity,
                      ray_.time};
     ++counts_.shadow;
-    through = passage(scene_, shadow, media_, settings_.transparent_depth, w_);
+    through = passage(scene_, shadow, media_, settings_.transparent_depth, w_, RandomStream(sampler_, dimension));
     return !through.blocked();
   }
 
@@ -329,6 +344,7 @@ class CameraPath {
 
   // Carries the ray through its media up to t_end. True: it was scattered or absorbed on the way.
   bool travel_in_medium(float t_end) {
+    if (any_varies(scene_, media_)) return travel_in_varying_medium(t_end);
     const MediumHere here = medium_here(scene_, media_, w_);
     const uint32_t dimension = bounce_dimension(events_, 0);
     const bool may_go_on = rough_bounces_ < uint32_t(std::max(0, settings_.max_depth));
@@ -387,6 +403,143 @@ class CameraPath {
   // The camera's filter where the camera sees a scattering at first hand. What lights it is taken as unpolarised.
   const Polariser *filter() const { return bounces_ == 0 ? &pass_.polariser : nullptr; }
 
+  // The same through media that vary: delta tracking, and light looked for where it ends and at equiangular distances.
+  bool travel_in_varying_medium(float t_end) {
+    const uint32_t dimension = bounce_dimension(events_, 0);
+    const bool may_go_on = rough_bounces_ < uint32_t(std::max(0, settings_.max_depth));
+    const GatherDistance lamps = GatherDistance::equiangular(scene_, ray_, t_end);
+    if (!final_ray_ && !lamps.empty()) connect_at_equiangular(lamps, t_end, dimension);
+
+    RayMedia media(scene_, media_, w_, ray_);
+    RandomStream random(sampler_, dimension + kDimMedium);
+    const auto glow = [&](const Spectrum &contribution, const Spectrum &pdf) {
+      const bool first = medium_first_;
+      if (bounces_ == 0) medium_first_ = true;
+      add(contribution / pdf.average(), false);
+      medium_first_ = first;
+    };
+    Walk walk{throughput_, path_pdf_, previous_pdf_};
+    const auto take = [&] { throughput_ = walk.throughput, path_pdf_ = walk.path_pdf, previous_pdf_ = walk.light_pdf; };
+    MediumHere here;
+    float t = kInfinity, depth = 0, after = ray_.t_min;
+    bool collided = false;
+    // Lamps that the ray meets end an interval, so that what they add has come just so far.
+    for (LampHit lamp; intersect_lamps(scene_, ray_, after, t_end, ray_kind_, w_, lamp);) {
+      collided = fly(media, lamp.t, random, walk, depth, t, here, glow);
+      if (collided) break;
+      take();
+      add_met({SourceKind::Lamp, lamp.lamp}, lamp.radiance, ray_.origin + ray_.direction * lamp.t, lamp.normal,
+              lamp.t + travelled_);
+      after = std::nextafter(lamp.t, kInfinity);
+    }
+    if (!collided) collided = fly(media, t_end, random, walk, depth, t, here, glow);
+    if (!collided) {
+      take();
+      alive_ = throughput_.is_finite() && !throughput_.is_zero();
+      return !alive_;
+    }
+    if (final_ray_ || here.scattering.is_zero()) {
+      alive_ = false;
+      return true;
+    }
+    final_ray_ = !may_go_on;
+
+    throughput_ = walk.throughput * here.scattering, path_pdf_ = walk.path_pdf;
+    const Vec3 forward = ray_.direction;
+    last_ = {};
+    last_.light_was_sampled = true;
+    last_.event = EventClass::Rough;
+    last_.p = ray_.origin + forward * t;
+    last_.transmissive = true;
+    const float straight = here.extinction.average() * std::exp(-depth);
+    if (!lamps.empty()) last_.elsewhere = lamps.density(t) / std::max(straight, 1e-30f);
+    connect_from_medium(here, forward, dimension);
+
+    float phase_pdf = 0;
+    const Vec3 direction = here.sample_phase(w_, forward, sampler_.get1d(dimension + kDimBsdfLobe),
+                                             sampler_.get2d(dimension + kDimMediumPhase), phase_pdf);
+    if (!(phase_pdf > 0)) {
+      alive_ = false;
+      return true;
+    }
+    last_.phase = here.phase_value(w_, dot(forward, direction));
+    last_.pdf = phase_pdf;
+    previous_pdf_ = path_pdf_;
+    throughput_ *= here.scattered(w_, -direction, -forward, filter()) / phase_pdf;
+    path_pdf_ *= last_.phase / phase_pdf;
+    if (!throughput_.is_finite() || throughput_.is_zero()) {
+      alive_ = false;
+      return true;
+    }
+    if (bounces_ == 0) medium_first_ = true;
+    ++bounces_, ++events_, ++rough_bounces_, ++rough_events_;
+    rough_in_medium_ = true;
+    ray_kind_ = OPAL_RAY_SCATTER;
+    ray_ = {last_.p, direction, 0, kInfinity, ray_.time};
+    travelled_ = 0;
+    roulette(sampler_.get1d(dimension + kDimRoulette));
+    return true;
+  }
+
+  // Direct light at the collision last_.p.
+  void connect_from_medium(const MediumHere &here, const Vec3 &forward, uint32_t dimension) {
+    LightSample sample;
+    if (!sample_light(scene_, last_.p, {}, true, -1, sampler_.get1d(dimension + kDimLightPick),
+                      sampler_.get2d(dimension + kDimLight), w_, ray_.time, sample) ||
+        !(sample.pdf > 0) || !(sample.visibility & OPAL_RAY_SCATTER))
+      return;
+    const Spectrum phase = here.phase_value(w_, dot(forward, sample.wi));
+    const Spectrum share = last_.share(sample.dirac ? Spectrum(0.0f) : phase, sample.pdf);
+    const Spectrum scattered = here.scattered(w_, -sample.wi, -forward, filter());
+    add_connected(throughput_ * share * scattered * sample.radiance, sample, last_.p, path_pdf_,
+                  sample.dirac ? Spectrum(0.0f) : phase, dimension + kDimLight);
+  }
+
+  // Direct light at a distance chosen for the lamps' sake, however thin the medium is there.
+  void connect_at_equiangular(const GatherDistance &lamps, float t_end, uint32_t dimension) {
+    float distance_pdf = 0;
+    const Vec2 u = sampler_.get2d(dimension + kDimMediumDistance);
+    const float t = lamps.sample(u.x, u.y, distance_pdf);
+    if (!(distance_pdf > 0) || !(t < t_end)) return;
+    RayMedia media(scene_, media_, w_, ray_);
+    const MediumHere here = media.at(t);
+    if (!here.scatters()) return;
+    const Vec3 p = ray_.origin + ray_.direction * t;
+    LightSample sample;
+    if (!sample_light(scene_, p, {}, true, -1, sampler_.get1d(dimension + kDimMediumPick),
+                      sampler_.get2d(dimension + kDimMediumLight), w_, ray_.time, sample) ||
+        !(sample.pdf > 0) || !(sample.visibility & OPAL_RAY_SCATTER))
+      return;
+    RandomStream random(sampler_, dimension + kDimMediumDistance);
+    Walk walk{throughput_, path_pdf_, path_pdf_};
+    float depth = 0;
+    pass_through(media, t, random, walk, depth);
+    if (walk.throughput.is_zero()) return;
+    const Spectrum phase = here.phase_value(w_, dot(ray_.direction, sample.wi));
+    LastEvent there;
+    there.elsewhere = distance_pdf / std::max(here.extinction.average() * std::exp(-depth), 1e-30f);
+    Spectrum share = there.share(sample.dirac ? Spectrum(0.0f) : phase, sample.pdf);
+    for (int i = 0; i < kWavelengths; ++i) share[i] = 1 - share[i];
+    const Spectrum scattered = here.scattering * here.scattered(w_, -sample.wi, -ray_.direction, filter());
+    add_connected(walk.throughput * scattered * share * sample.radiance / distance_pdf, sample, p, walk.light_pdf,
+                  Spectrum(0.0f), dimension + kDimMediumLight);
+  }
+
+  // Light that a connection brings: `light` is f / p(hero) without the passage and the density of the light sample, `reached`
+  // the density of the path up to p, `path` that of going the same way by itself.
+  void add_connected(Spectrum light, const LightSample &sample, const Vec3 &p, const Spectrum &reached, const Spectrum &path,
+                     uint32_t dimension) {
+    if (light.is_zero() || !light.is_finite()) return;
+    Passage passed;
+    if (!passes(p, sample, dimension, passed)) return;
+    const Spectrum pdf = reached * (passed.light_pdf * sample.pdf + path * passed.path_pdf);
+    light *= uplift(passed.surfaces, w_) * passed.medium / pdf.average();
+    const bool first = medium_first_;
+    if (bounces_ == 0) medium_first_ = true;
+    add_scattered(light, false);
+    medium_first_ = first;
+  }
+
   // Emission over the segment, in closed form: e (1 - exp(-sigma t)) / sigma.
   void add_emitted(const MediumHere &here, float t_end) {
     Spectrum emitted(0.0f);
@@ -422,9 +575,9 @@ class CameraPath {
         throughput_ * through * here.scattering * here.scattered(w_, -sample.wi, -ray_.direction, filter()) * sample.radiance;
     if (contribution.is_zero() || !contribution.is_finite()) return;
     Passage passed;
-    if (!passes(p, sample, passed)) return;
-    Spectrum pdf = path_pdf_ * (distance_pdf * sample.pdf);
-    if (!sample.dirac) pdf += path_pdf_ * here.extinction * through * phase * passed.medium;
+    if (!passes(p, sample, dimension + kDimMediumLight, passed)) return;
+    Spectrum pdf = path_pdf_ * passed.light_pdf * (distance_pdf * sample.pdf);
+    if (!sample.dirac) pdf += path_pdf_ * here.extinction * through * phase * passed.path_pdf;
     contribution *= uplift(passed.surfaces, w_) * passed.medium / pdf.average();
     const bool first = medium_first_;
     if (bounces_ == 0) medium_first_ = true;

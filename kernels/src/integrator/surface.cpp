@@ -96,17 +96,28 @@ EventClass classify(const Surface &surface, const BsdfSample &sample, const Wave
   return u * total < value.sharp.sum() ? EventClass::Sharp : EventClass::Rough;
 }
 
-Passage passage(const Scene &scene, const Ray &ray, MediumSet media, int max_layers, const Wavelengths &w) {
+Passage passage(const Scene &scene, const Ray &ray, MediumSet media, int max_layers, const Wavelengths &w,
+                RandomStream random) {
   Passage result;
+  Ray rest = ray;
   const auto attenuate = [&](float distance) {
-    if (!media.empty()) result.medium *= transmittance_over(medium_here(scene, media, w).extinction, distance);
+    if (media.empty()) return;
+    if (!any_varies(scene, media)) {
+      const Spectrum through = transmittance_over(medium_here(scene, media, w).extinction, distance);
+      result.medium *= through, result.path_pdf *= through;
+      return;
+    }
+    RayMedia varying(scene, media, w, rest);
+    Walk walk;
+    float depth = 0;
+    pass_through(varying, distance, random, walk, depth);
+    result.medium *= walk.throughput, result.path_pdf *= walk.path_pdf, result.light_pdf *= walk.light_pdf;
   };
   if (!scene.any_transparent_shadow) {  // nothing to look through, so no boundary of a medium either
     if (scene.occluded(ray, OPAL_RAY_SHADOW)) result.surfaces = {};
     else attenuate(ray.t_max);
     return result;
   }
-  Ray rest = ray;
   for (int layer = 0;;) {
     const Hit hit = scene.intersect(rest, OPAL_RAY_SHADOW);
     attenuate(std::min(hit.t, rest.t_max));

@@ -4,7 +4,7 @@
 
 #include "bsdf/closure.h"
 #include "integrator/path_class.h"
-#include "media/segment.h"
+#include "media/tracking.h"
 #include "scene/interior.h"
 #include "scene/scene.h"
 
@@ -41,12 +41,14 @@ Spectrum rough_towards_camera(const Scene &scene, const Surface &surface, const 
 EventClass classify(const Surface &surface, const BsdfSample &sample, const Wavelengths &w, Transport transport, float u);
 
 // What passes along a shadow ray that starts in `media`: `surfaces` is 0 behind opaque things, else the product of the
-// straight-through transmittances of at most `max_layers` surfaces (linear Rec.709); `medium` is the media's share.
+// straight-through transmittances of at most `max_layers` surfaces (linear Rec.709); `medium` is the media's share, exact where
+// they are homogeneous and by ratio tracking where they vary, as f / p(hero). Multiple importance wants the densities
+// relative to the hero's: `light_pdf` of this connection, `path_pdf` of a path that comes through by itself.
 struct Passage {
   Vec3 surfaces{1, 1, 1};
-  Spectrum medium{1.0f};
+  Spectrum medium{1.0f}, light_pdf{1.0f}, path_pdf{1.0f};
   bool blocked() const { return max_component(surfaces) <= 0; }
 };
-Passage passage(const Scene &scene, const Ray &ray, MediumSet media, int max_layers, const Wavelengths &w);
+Passage passage(const Scene &scene, const Ray &ray, MediumSet media, int max_layers, const Wavelengths &w, RandomStream random);
 
 }  // namespace opal

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/spectrum.h"
+#include "media/density.h"
 #include "media/phase_function.h"
 
 #include <array>
@@ -10,11 +11,21 @@
 namespace opal {
 
 // Spectra name entries of Scene::spectra; -1 is none (0 everywhere). Units: 1/m; emission W/(m3 sr) as radiance per metre.
+//
+// At a place p the coefficients are the spectra times the density field at p, plus what grids of colours say there (linear
+// Rec.709, in the spectra's units). The emission follows a field of its own.
 struct Medium {
   int extinction = -1;  // sigma_t
   int scattering = -1;  // sigma_s
   int emission = -1;
   int phase = -1;  // index into Scene::phases, -1: isotropic
+  DensityField density, emission_density;
+  int scattering_grid = -1, absorption_grid = -1, emission_grid = -1;  // three channels
+
+  bool varies() const {
+    return density.kind != DensityKind::Homogeneous || emission_density.kind != DensityKind::Homogeneous ||
+           scattering_grid >= 0 || absorption_grid >= 0 || emission_grid >= 0;
+  }
 };
 
 // The media a path is inside of, each entered through the boundary of one instance.

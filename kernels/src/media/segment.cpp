@@ -22,6 +22,12 @@ MediumHere medium_here(const Scene &scene, const MediumSet &set, const Wavelengt
   return here;
 }
 
+bool any_varies(const Scene &scene, const MediumSet &set) {
+  for (int i = 0; i < set.count(); ++i)
+    if (scene.media[size_t(set[i].medium)].varies()) return true;
+  return false;
+}
+
 Spectrum MediumHere::phase_value(const Wavelengths &w, float cosine) const {
   if (n == 1) return phase[0]->value(w, cosine);
   Spectrum sum(0.0f);

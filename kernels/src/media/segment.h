@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The media along one ray segment, homogeneous: coefficients that add, the mixed phase function, free paths and the
-// places where light is gathered along a ray.
+// The media along one ray segment: coefficients that add, the mixed phase function, the places where light is gathered along
+// a ray, and what homogeneous media have in closed form. Media that vary are followed by media/tracking.h.
 #pragma once
 
 #include "core/sampler.h"
@@ -24,7 +24,10 @@ struct MediumHere {
   bool scatters() const { return scattering.max() > 0; }
 };
 
+// Of homogeneous media: the same everywhere.
 MediumHere medium_here(const Scene &scene, const MediumSet &set, const Wavelengths &w);
+// Whether any of the media is not the same everywhere, so that closed forms do not hold.
+bool any_varies(const Scene &scene, const MediumSet &set);
 
 // exp(-extinction t); extinction 0 over an infinite distance is 1.
 Spectrum transmittance_over(const Spectrum &extinction, float t);
@@ -34,6 +37,13 @@ Spectrum transmittance_over(const Spectrum &extinction, float t);
 class GatherDistance {
  public:
   GatherDistance(const Scene &scene, const Ray &ray, float t_max, float extinction);
+  // Equiangular alone, for media whose transmittance is not known; the density is 0 everywhere where there is no finite lamp.
+  static GatherDistance equiangular(const Scene &scene, const Ray &ray, float t_max) {
+    GatherDistance d(scene, ray, t_max, 0);
+    d.share_ = 0;
+    return d;
+  }
+  bool empty() const { return share_ == 0 && n_lamps_ == 0; }
   float sample(float pick, float u, float &density) const;
   float density(float t) const;
 

@@ -48,7 +48,10 @@ class PhotonPath {
     const uint32_t kind = sharp_events_ + rough_events_ == 0 ? uint32_t(OPAL_RAY_ALL & ~OPAL_RAY_CAMERA) : ray_kind_;
     const Hit hit = scene_.intersect(ray_, kind);
     ++out_.rays;
-    if (!media_.empty()) {
+    if (!media_.empty() && any_varies(scene_, media_)) {
+      bool alive = true;
+      if (travel_in_varying_medium(hit, bounce_dimension(events, 0), alive)) return alive;
+    } else if (!media_.empty()) {
       const MediumHere here = medium_here(scene_, media_, w_);
       if (photon_goes_on(settings_.photons_carry)) {
         bool alive = true;
@@ -146,6 +149,43 @@ class PhotonPath {
     return true;
   }
 
+  // The same in media that vary.
+  bool travel_in_varying_medium(const Hit &hit, uint32_t dimension, bool &alive) {
+    RayMedia media(scene_, media_, w_, ray_);
+    RandomStream random(sampler_, dimension + kDimMedium);
+    Walk walk{flux_, path_pdf_, path_pdf_};
+    float depth = 0;
+    if (!photon_goes_on(settings_.photons_carry)) {
+      if (hit.valid()) pass_through(media, hit.t, random, walk, depth);
+      flux_ = walk.throughput, path_pdf_ = walk.light_pdf;
+      alive = !flux_.is_zero() && flux_.is_finite();
+      return !alive;
+    }
+    MediumHere here;
+    float t = 0;
+    if (!fly(media, hit.t, random, walk, depth, t, here, [](const Spectrum &, const Spectrum &) {})) {
+      flux_ = walk.throughput, path_pdf_ = walk.path_pdf;
+      return false;
+    }
+    const Vec3 forward = ray_.direction;
+    const float albedo = here.scattering[0] / here.extinction[0];
+    alive = albedo > 0 && sampler_.get1d(dimension + kDimRoulette) < albedo && ++rough_bounces_ <= settings_.max_depth;
+    if (!alive) return true;
+    float phase_pdf = 0;
+    const Vec3 direction = here.sample_phase(w_, forward, sampler_.get1d(dimension + kDimBsdfLobe),
+                                             sampler_.get2d(dimension + kDimMediumPhase), phase_pdf);
+    alive = phase_pdf > 0;
+    if (!alive) return true;
+    const Spectrum phase = here.phase_value(w_, dot(forward, direction));
+    flux_ = walk.throughput * here.scattering * here.scattered(w_, forward, direction, nullptr) / (phase_pdf * albedo);
+    path_pdf_ = walk.path_pdf * phase / phase_pdf;
+    alive = flux_.is_finite() && !flux_.is_zero();
+    ++rough_events_;
+    ray_kind_ = OPAL_RAY_SCATTER;
+    ray_ = {ray_.origin + forward * t, direction, 0, kInfinity, ray_.time};
+    return true;
+  }
+
   bool has_transparent_lobe() const {
     for (int i = 0; i < surface_.closures.count; ++i)
       if (surface_.closures.lobes[i].kind == LobeKind::Transparent) return true;
@@ -184,10 +224,13 @@ class PhotonPath {
     Spectrum radiance = flux * f * (seen.importance * float(settings_.width) * float(settings_.height));
     if (radiance.is_zero() || !radiance.is_finite()) return;
     const Ray shadow{offset_origin(surface_.sp, seen.to_camera), seen.to_camera, 0, seen.distance, ray_.time};
-    const Passage through = passage(scene_, shadow, media_, settings_.transparent_depth, w_);
+    const Passage through =
+        passage(scene_, shadow, media_, settings_.transparent_depth, w_,
+                RandomStream(sampler_, bounce_dimension(uint32_t(sharp_events_ + rough_events_), kDimSpare)));
     ++out_.rays;
     if (through.blocked()) return;
     radiance *= uplift(through.surfaces, w_) * through.medium;
+    radiance *= path_pdf_.average() / (path_pdf_ * through.light_pdf).average();
     const uint32_t pixel =
         (uint32_t(y) - uint32_t(region[1])) * uint32_t(region[2] - region[0]) + (uint32_t(x) - uint32_t(region[0]));
     out_.splats.push_back({pixel, photon_pass(sharp_events_, rough_events_), to_rgb(radiance, w_)});

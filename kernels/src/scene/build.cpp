@@ -245,6 +245,7 @@ int64_t Scene::memory_bytes() const {
     bytes += (mesh->triangles.size() + mesh->material_slots.size()) * sizeof(int32_t);
     for (const Attribute &a : mesh->attributes) bytes += a.values.size() * sizeof(float);
   }
+  for (const auto &grid : grids) bytes += size_t(grid->memory_bytes());
   for (const Image &image : images) bytes += image.bytes.size() + image.floats.size() * sizeof(float);
   return int64_t(bytes);
 }

@@ -111,6 +111,7 @@ struct Scene {
   std::vector<Image> images;
   std::vector<SpectralTable> spectra;
   std::vector<PhaseFunction> phases;
+  std::vector<std::unique_ptr<Grid>> grids;
   std::vector<Medium> media;
   int world_medium = -1;
   std::vector<Material> materials;
