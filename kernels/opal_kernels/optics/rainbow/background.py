@@ -8,6 +8,8 @@ unit of light on the drop (integral 1 over all orders for each polarisation), ta
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from opal_kernels.optics.rainbow import geometric
@@ -25,8 +27,9 @@ def order_density(n: float, k: int) -> np.ndarray:
     return geometric.energy(n, k, EDGES, _RAYS.get(k, 3000)) / SOLID_ANGLES
 
 
+@lru_cache(maxsize=64)
 def orders(n: float) -> dict[int, np.ndarray]:
-    """Return `order_density` of every order from -1 to `HIGHEST_ORDER`."""
+    """Return `order_density` of every order from -1 to `HIGHEST_ORDER`; shared, not to be written to."""
     return {k: order_density(n, k) for k in range(-1, HIGHEST_ORDER + 1)}
 
 

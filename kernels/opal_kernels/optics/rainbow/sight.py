@@ -87,11 +87,10 @@ def azimuth(direction: np.ndarray) -> float:
     return float(np.arctan2(direction[0], direction[1]) % (2 * np.pi))
 
 
-def visible(sun: np.ndarray, view: View, above_horizon: bool = False) -> bool:
-    """Whether a part of the primary bow lies in the frame; with `above_horizon` only what stands in the sky counts."""
+def visible(sun: np.ndarray, view: View, lowest_rad: float = -np.pi / 2) -> bool:
+    """Whether a part of the primary bow lies in the frame, not under an elevation, where the ground hides the drops."""
     bow = circle(sun)
-    seen = view.sees(bow)
-    return bool((seen & (bow[:, 2] > 0)).any() if above_horizon else seen.any())
+    return bool((view.sees(bow) & (bow[:, 2] >= np.sin(lowest_rad))).any())
 
 
 def where_to_look(sun: np.ndarray) -> str:
@@ -100,7 +99,7 @@ def where_to_look(sun: np.ndarray) -> str:
     return f"azimuth {np.degrees(azimuth(anti)):.0f}° (from +Y towards +X), elevation {np.degrees(top_elevation(sun)):.0f}°"
 
 
-def warnings(suns: Sequence[np.ndarray], view: View, lamps: bool = False) -> list[str]:
+def warnings(suns: Sequence[np.ndarray], view: View, lamps: bool = False, lowest_rad: float = -np.pi / 2) -> list[str]:
     """Return why a camera in rain sees no bow, one sentence a reason; empty where it may see one.
 
     Parameters
@@ -110,6 +109,8 @@ def warnings(suns: Sequence[np.ndarray], view: View, lamps: bool = False) -> lis
     view : View
     lamps : bool
         Whether other lamps light the drops: their bows are wherever the lamps put them, and nothing is said.
+    lowest_rad : float
+        Elevation under which the ground hides the drops.
     """
     if lamps:
         return []
@@ -118,7 +119,7 @@ def warnings(suns: Sequence[np.ndarray], view: View, lamps: bool = False) -> lis
     risen = [sun for sun in suns if elevation(sun) > -1e-3]
     if not risen:
         return ["The sun is below the horizon: drops over flat ground get none of its light and show no bow."]
-    if any(visible(sun, view) for sun in risen):
+    if any(visible(sun, view, lowest_rad) for sun in risen):
         return []
     sun = max(risen, key=lambda s: float(-s @ view.forward))
     if float(sun @ view.forward) > np.cos(np.radians(60)):
@@ -130,3 +131,47 @@ def warnings(suns: Sequence[np.ndarray], view: View, lamps: bool = False) -> lis
             f"to {where_to_look(sun)}."
         ]
     return [f"No bow is in the frame: the top of the bow stands at {where_to_look(sun)}."]
+
+
+@dataclass(frozen=True)
+class Curtain:
+    """Where a wall of rain stands: its centre, its size (across, deep, high) and its turn about the vertical from facing -Y."""
+
+    centre: tuple[float, float, float]
+    size: tuple[float, float, float]
+    turn: float
+
+
+def curtain(
+    suns: Sequence[np.ndarray], view: View | None, eye: Sequence[float], distance: float, depth: float, ground: float = 0.0
+) -> Curtain:
+    """Return a wall of rain opposite the sun that an eye looks at best, wide and high enough for both bows.
+
+    Parameters
+    ----------
+    suns : sequence of arrays (3,)
+        Unit vectors towards the suns; without one that is up the wall stands before the camera.
+    view : View, optional
+        None looks along +Y.
+    eye : sequence of 3 floats
+        Where the camera is, m.
+    distance, depth : float
+        To the wall's near side and through it, m.
+    ground : float
+        Height that the rain falls to, m; the wall ends below the eye in any case.
+    """
+    forward = np.array([0.0, 1.0, 0.0]) if view is None else view.forward
+    risen = [sun for sun in suns if elevation(sun) > -1e-3]
+    ahead = -max(risen, key=lambda s: float(-s @ forward)) if risen else forward
+    flat = np.array([ahead[0], ahead[1]])
+    if np.linalg.norm(flat) < 1e-6:
+        flat = np.array([0.0, 1.0])
+    flat /= np.linalg.norm(flat)
+    far = distance + depth
+    reach = far * np.tan(SECONDARY_RAD + np.radians(5))
+    low = min(ground, eye[2] - 0.02 * far)
+    high = eye[2] + reach
+    centre = (eye[0] + flat[0] * (distance + depth / 2), eye[1] + flat[1] * (distance + depth / 2), (low + high) / 2)
+    return Curtain(
+        tuple(float(c) for c in centre), (float(2 * reach), float(depth), float(high - low)), float(np.arctan2(-flat[0], flat[1]))
+    )

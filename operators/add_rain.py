@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Add › Volume › Rain: a curtain of drops where a camera sees the bow, and a word where it cannot."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+from bpy.props import EnumProperty, FloatProperty
+
+from ..addon import rainbow_presets
+from ..addon.settings import frame_of
+
+
+class OPAL_OT_add_rain(bpy.types.Operator):
+    """Add a curtain of rain opposite the sun"""
+
+    bl_idname = "opal.add_rain"
+    bl_label = "Rain"
+    bl_description = "Add a curtain of rain where the scene's camera looks away from the sun, so that it shows a rainbow"
+    bl_options = {"REGISTER", "UNDO"}
+
+    preset: EnumProperty(name="Drops", description="What the drops are", items=rainbow_presets.items()[1:], default="CLASSIC")
+    distance: FloatProperty(
+        name="Distance",
+        description="From the camera to the curtain",
+        default=150.0,
+        min=0.01,
+        soft_max=5000.0,
+        subtype="DISTANCE",
+    )
+    depth: FloatProperty(
+        name="Depth",
+        description="How thick the curtain is",
+        default=150.0,
+        min=0.001,
+        soft_max=5000.0,
+        subtype="DISTANCE",
+    )
+    share: FloatProperty(
+        name="Light Caught",
+        description="How much of the light that crosses the curtain's depth the drops catch: more is a brighter bow and a darker background",
+        default=0.25,
+        min=0.001,
+        max=0.99,
+        subtype="FACTOR",
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return context.mode == "OBJECT"
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        import numpy as np
+        from opal_kernels.optics.rainbow import sight
+
+        scene = context.scene
+        suns = _suns(context)
+        eye, view = _camera(scene)
+        curtain = sight.curtain(suns, view, eye, self.distance, self.depth)
+        obj = bpy.data.objects.new("Rain", _box(curtain.size))
+        obj.location = curtain.centre
+        obj.rotation_euler = (0.0, 0.0, curtain.turn)
+        obj.display_type = "WIRE"
+        obj.data.materials.append(_material(self.preset, -np.log1p(-self.share) / self.depth))
+        context.collection.objects.link(obj)
+        for other in context.selected_objects:
+            other.select_set(False)
+        obj.select_set(True)
+        context.view_layer.objects.active = obj
+        if view is None:
+            self.report({"WARNING"}, "The scene has no camera: the rain stands where somebody at the origin sees the bow.")
+        else:
+            lamps = any(o.type == "LIGHT" and o.data.type != "SUN" for o in scene.objects if o.visible_get())
+            hidden = np.arctan2(curtain.centre[2] - curtain.size[2] / 2 - eye[2], self.distance)
+            for sentence in sight.warnings(suns, view, lamps, hidden):
+                self.report({"WARNING"}, sentence)
+        return {"FINISHED"}
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        self.layout.use_property_split = True
+        for name in ("preset", "distance", "depth", "share"):
+            self.layout.prop(self, name)
+
+
+def _suns(context: bpy.types.Context) -> list[Any]:
+    """Directions to the scene's suns, brightest first."""
+    import numpy as np
+
+    lamps = [o for o in context.scene.objects if o.type == "LIGHT" and o.data.type == "SUN" and not o.hide_render and o.data.energy > 0.0]
+    context.view_layer.update()
+    lamps.sort(key=lambda o: -o.data.energy)
+    columns = [np.asarray(o.matrix_world, float)[:3, 2] for o in lamps]
+    return [axis / np.linalg.norm(axis) for axis in columns]
+
+
+def _camera(scene: bpy.types.Scene) -> tuple[Any, Any]:
+    """Where the eye is, and how it looks (None without a camera)."""
+    from opal_kernels.optics.rainbow import sight
+
+    from ..addon.translate.camera import camera_from_object
+
+    camera = scene.camera
+    if camera is None or camera.type != "CAMERA":
+        return (0.0, 0.0, 1.7), None
+    frame = frame_of(scene.render)
+    view = sight.View.of(camera_from_object(camera, scene, frame.width, frame.height))
+    return tuple(camera.matrix_world.translation), view
+
+
+def _box(size: tuple[float, float, float]) -> bpy.types.Mesh:
+    """A closed box about the origin, faces outwards."""
+    x, y, z = (0.5 * s for s in size)
+    vertices = [(i * x, j * y, k * z) for k in (-1, 1) for j in (-1, 1) for i in (-1, 1)]
+    faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    mesh = bpy.data.meshes.new("Rain")
+    mesh.from_pydata(vertices, [], faces)
+    mesh.update()
+    return mesh
+
+
+def _material(preset: str, extinction: float) -> bpy.types.Material:
+    material = bpy.data.materials.new("Rain")
+    material.opal.kind = "RAINBOW"
+    material.opal.rainbow.preset = preset
+    material.opal.rainbow.extinction = extinction
+    return material
+
+
+def _draw_menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    self.layout.operator(OPAL_OT_add_rain.bl_idname, icon="OUTLINER_OB_FORCE_FIELD")
+
+
+def register() -> None:
+    bpy.utils.register_class(OPAL_OT_add_rain)
+    bpy.types.VIEW3D_MT_volume_add.append(_draw_menu)
+
+
+def unregister() -> None:
+    bpy.types.VIEW3D_MT_volume_add.remove(_draw_menu)
+    bpy.utils.unregister_class(OPAL_OT_add_rain)
