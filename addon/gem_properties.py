@@ -4,13 +4,33 @@
 from __future__ import annotations
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, StringProperty
+from bpy.props import CollectionProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, StringProperty
 
 from . import presets
 
 # Diamond, which a new gem starts as: Peter 1923 as in the species table, and a Cauchy formula through its F and C lines.
 _DIAMOND_B, _DIAMOND_C = (4.3356, 0.3306, 0.0), (0.011236, 0.030625, 0.0)
 _DIAMOND_CAUCHY = (2.37837, 0.013422)
+
+
+class OpalAbsorptionSample(bpy.types.PropertyGroup):
+    """One sample of a measured absorption."""
+
+    wavelength: FloatProperty(
+        name="Wavelength",
+        description="Wavelength of the sample in nanometres",
+        default=550.0,
+        precision=1,
+        update=presets.on_sample,
+    )
+    absorption: FloatProperty(
+        name="Absorption",
+        description="Absorption at this wavelength per millimetre: light falls to exp(-absorption × millimetres)",
+        default=0.0,
+        precision=4,
+        update=presets.on_sample,
+    )
+    last_good: FloatVectorProperty(size=2, default=(550.0, 0.0), options={"HIDDEN"})
 
 
 class OpalGemProperties(bpy.types.PropertyGroup):
@@ -79,13 +99,23 @@ class OpalGemProperties(bpy.types.PropertyGroup):
         ),
         default="EXACT",
     )
+    absorption_source: EnumProperty(
+        name="Absorption",
+        description="What says how the stone absorbs light",
+        items=(
+            ("COLOR", "Color", "A color that white light takes on along a depth"),
+            ("CURVE", "Curve", "Absorption against wavelength: the species' own, or one imported from a measurement"),
+        ),
+        default="COLOR",
+        update=presets.on_absorption_source,
+    )
     absorption_color: FloatVectorProperty(
         name="Absorption Color",
         description="What white light becomes along the absorption depth",
         size=3,
         default=(1.0, 1.0, 1.0),
-        min=0.0,
-        max=1.0,
+        soft_min=0.0,
+        soft_max=1.0,
         subtype="COLOR",
         update=presets.on_absorption,
     )
@@ -93,11 +123,16 @@ class OpalGemProperties(bpy.types.PropertyGroup):
         name="Absorption Depth",
         description="Length of stone after which white light has the absorption color",
         default=0.005,
-        min=1e-6,
+        soft_min=1e-6,
         soft_max=1.0,
         precision=4,
         subtype="DISTANCE",
         update=presets.on_absorption,
+    )
+    absorption_curve: CollectionProperty(
+        type=OpalAbsorptionSample,
+        name="Absorption Curve",
+        description="Samples of absorption against wavelength, straight between them and level outside",
     )
     roughness: FloatProperty(
         name="Roughness",
@@ -117,6 +152,7 @@ class OpalGemProperties(bpy.types.PropertyGroup):
     refusal: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
     last_good: FloatVectorProperty(size=8, default=(*_DIAMOND_CAUCHY, *_DIAMOND_B, *_DIAMOND_C), options={"HIDDEN"})
     last_good_dispersion: StringProperty(default="SELLMEIER", options={"HIDDEN"})
+    last_good_absorption: FloatVectorProperty(size=4, default=(1.0, 1.0, 1.0, 0.005), options={"HIDDEN"})
 
 
-CLASSES = (OpalGemProperties,)
+CLASSES = (OpalAbsorptionSample, OpalGemProperties)

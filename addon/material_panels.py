@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 
-from . import presets
+from . import curve_icons, presets
 from .panels import OpalPanel
 
 
@@ -58,7 +58,10 @@ class OPAL_MATERIAL_PT_gem(_MaterialPanel):
         layout.use_property_split = True
         gem = context.material.opal.gem
         layout.prop(gem, "species")
+        if gem.refusal:
+            layout.label(text=gem.refusal, icon="ERROR")
         _draw_read_out(layout, gem)
+        _draw_chart(layout, presets.index_chart(gem))
         layout.prop(gem, "roughness")
         layout.prop(gem, "fresnel")
         layout.prop(gem, "priority")
@@ -72,8 +75,6 @@ class OPAL_MATERIAL_PT_gem_dispersion(_MaterialPanel):
         layout = self.layout
         layout.use_property_split = True
         gem = context.material.opal.gem
-        if gem.refusal:
-            layout.label(text=gem.refusal, icon="ERROR")
         layout.prop(gem, "dispersion", text="Formula")
         if gem.dispersion == "CAUCHY":
             column = layout.column(align=True)
@@ -92,8 +93,15 @@ class OPAL_MATERIAL_PT_gem_absorption(_MaterialPanel):
         layout = self.layout
         layout.use_property_split = True
         gem = context.material.opal.gem
-        layout.prop(gem, "absorption_color", text="Color")
-        layout.prop(gem, "absorption_depth", text="Depth")
+        layout.prop(gem, "absorption_source", text="From", expand=True)
+        if gem.absorption_source == "CURVE":
+            row = layout.row()
+            row.label(text=f"{len(gem.absorption_curve)} samples")
+            _draw_chart(layout, presets.absorption_chart(gem))
+        else:
+            layout.prop(gem, "absorption_color", text="Color")
+            layout.prop(gem, "absorption_depth", text="Depth")
+        layout.operator("opal.import_absorption", icon="FILE_FOLDER")
 
 
 def _draw_read_out(layout: Any, gem: Any) -> None:
@@ -113,6 +121,16 @@ def _draw_read_out(layout: Any, gem: Any) -> None:
         split.label(text=value)
 
 
+def _draw_chart(layout: Any, chart: Any) -> None:
+    """A small picture of a curve, and the range that it shows."""
+    if chart is None:
+        return
+    layout.template_icon(icon_value=curve_icons.icon(chart), scale=5.0)
+    row = layout.row()
+    row.alignment = "CENTER"
+    row.label(text=chart.caption)
+
+
 CLASSES = (
     OPAL_MATERIAL_PT_kind,
     OPAL_MATERIAL_PT_surface,
@@ -128,5 +146,6 @@ def register() -> None:
 
 
 def unregister() -> None:
+    curve_icons.clear()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

@@ -7,6 +7,7 @@ cannot be rendered are refused: the last ones that could are put back, and the s
 
 from __future__ import annotations
 
+import dataclasses
 import zlib
 from typing import Any
 
@@ -45,7 +46,46 @@ def settings_of(gem: Any) -> Any:
         sellmeier_c=tuple(gem.sellmeier_c),
         absorption_color=tuple(gem.absorption_color),
         absorption_depth=gem.absorption_depth,
+        absorption_curve=curve_of(gem) if gem.absorption_source == "CURVE" else None,
     )
+
+
+def curve_of(gem: Any) -> list[tuple[float, float]]:
+    """Samples of a gem's absorption curve: wavelength (nm), absorption (1/mm)."""
+    return [(sample.wavelength, sample.absorption) for sample in gem.absorption_curve]
+
+
+def set_curve(gem: Any, samples: Any) -> None:
+    """Fills a gem's absorption curve, and makes it what the stone absorbs by; no edit of the interface.
+
+    Parameters
+    ----------
+    samples : iterable of (float, float)
+        Wavelength (nm) and absorption (1/mm), already known to be good.
+    """
+    global _filling
+    filling, _filling = _filling, True
+    try:
+        gem.absorption_curve.clear()
+        for nm, value in samples:
+            sample = gem.absorption_curve.add()
+            sample.wavelength, sample.absorption = nm, value
+            sample.last_good = nm, value
+        gem.absorption_source = "CURVE"
+        gem.refusal = ""
+    finally:
+        _filling = filling
+
+
+def take_curve(gem: Any, samples: Any) -> None:
+    """A measured curve takes the place of a gem's absorption, which is then no longer its species'."""
+    global _filling
+    _filling = True
+    try:
+        set_curve(gem, samples)
+        gem.species = CUSTOM
+    finally:
+        _filling = False
 
 
 def read_out(gem: Any) -> Any:
@@ -58,6 +98,29 @@ def read_out(gem: Any) -> Any:
     return None if gems.refusal(settings) else gems.read_out(settings)
 
 
+def index_chart(gem: Any) -> Any:
+    """The `opal_kernels.charts.Chart` of a gem's n(λ); None where its numbers cannot be rendered."""
+    from opal_kernels import charts
+    from opal_kernels import gem as gems
+    from opal_kernels.descriptions import wavelengths
+    from opal_kernels.optics import species
+
+    if gem.species != CUSTOM:
+        return charts.index_chart(species.index(gem.species, wavelengths()))
+    settings = settings_of(gem)
+    return None if gems.refusal(settings) else charts.index_chart(gems.index(settings))
+
+
+def absorption_chart(gem: Any) -> Any:
+    """The `opal_kernels.charts.Chart` of a gem's absorption; None for a clear stone."""
+    from opal_kernels import charts
+    from opal_kernels import gem as gems
+
+    settings = settings_of(gem)
+    sigma = None if gems.absorption_refusal(settings) else gems.absorption(settings)
+    return None if sigma is None else charts.absorption_chart(sigma)
+
+
 def _write(gem: Any, settings: Any) -> None:
     gem.dispersion = settings.dispersion
     gem.cauchy_b, gem.cauchy_c = settings.cauchy
@@ -65,6 +128,9 @@ def _write(gem: Any, settings: Any) -> None:
     gem.sellmeier_c = settings.sellmeier_c
     gem.absorption_color = settings.absorption_color
     gem.absorption_depth = settings.absorption_depth
+    gem.absorption_source = "COLOR"
+    if settings.absorption_curve is not None:
+        set_curve(gem, settings.absorption_curve)
 
 
 def _index_numbers(gem: Any) -> tuple[float, ...]:
@@ -75,6 +141,7 @@ def _keep(gem: Any) -> None:
     """Remembers the index's numbers as the last good ones."""
     gem.last_good = _index_numbers(gem)
     gem.last_good_dispersion = gem.dispersion
+    gem.last_good_absorption = (*gem.absorption_color, gem.absorption_depth)
     gem.refusal = ""
 
 
@@ -118,13 +185,66 @@ def on_index(gem: Any, _context: Any = None) -> None:
 
 
 def on_absorption(gem: Any, _context: Any = None) -> None:
-    """After an edit of the colour: the stone is no longer the species'."""
+    """After an edit of colour or depth: the stone absorbs by them and is no longer its species', or the last good ones stay."""
     global _filling
     if _filling:
         return
+    from opal_kernels import gem as gems
+
+    if (*gem.absorption_color, gem.absorption_depth) == tuple(gem.last_good_absorption):
+        return
     _filling = True
     try:
-        gem.species = CUSTOM
-        gem.refusal = ""
+        settings = settings_of(gem)
+        if sentence := gems.absorption_refusal(dataclasses.replace(settings, absorption_curve=None)):
+            good = tuple(gem.last_good_absorption)
+            gem.absorption_color, gem.absorption_depth = good[:3], good[3]
+            gem.refusal = sentence
+        else:
+            gem.species, gem.absorption_source = CUSTOM, "COLOR"
+            gem.last_good_absorption = (*gem.absorption_color, gem.absorption_depth)
+            gem.refusal = ""
+    finally:
+        _filling = False
+
+
+def on_absorption_source(gem: Any, _context: Any = None) -> None:
+    """After the choice of colour or curve: an empty curve is refused."""
+    global _filling
+    if _filling:
+        return
+    from opal_kernels import gem as gems
+
+    _filling = True
+    try:
+        sentence = gems.absorption_refusal(settings_of(gem))
+        if sentence:
+            gem.absorption_source = "COLOR"
+        else:
+            gem.species = CUSTOM
+        gem.refusal = sentence
+    finally:
+        _filling = False
+
+
+def on_sample(sample: Any, _context: Any = None) -> None:
+    """After an edit of one sample of an absorption curve: the last good one stays where the new one cannot be."""
+    global _filling
+    if _filling or (sample.wavelength, sample.absorption) == tuple(sample.last_good):
+        return
+    from opal_kernels import gem as gems
+
+    gem = sample.id_data.opal.gem
+    _filling = True
+    try:
+        one = dataclasses.replace(settings_of(gem), absorption_curve=[(sample.wavelength, sample.absorption)])
+        sentence = gems.absorption_refusal(one)
+        if sentence:
+            sample.wavelength, sample.absorption = sample.last_good
+        else:
+            sample.last_good = sample.wavelength, sample.absorption
+            if gem.absorption_source == "CURVE":
+                gem.species = CUSTOM
+        gem.refusal = sentence
     finally:
         _filling = False

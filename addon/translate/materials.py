@@ -83,6 +83,8 @@ class Materials:
         if sentence := gems.refusal(presets.settings_of(gem)) if gem.species == presets.CUSTOM else "":
             self._report.add(name, sentence + " The gem is rendered with an index of 1.5.")
             index[:] = 1.5
+        if sentence := gems.absorption_refusal(presets.settings_of(gem)) if gem.species == presets.CUSTOM else "":
+            self._report.add(name, sentence + " The gem is rendered clear.")
         if absorption is not None:
             absorption = absorption * self._absorption_scale
         description = Gem(
@@ -99,6 +101,6 @@ def gem_spectra(gem: Any) -> tuple[Any, Any]:
     """n and σa (1/m, or None) at 360 ... 830 nm of a gem: the species' own tables, or what its numbers say."""
     if gem.species == presets.CUSTOM:
         settings = presets.settings_of(gem)
-        return gems.index(settings), gems.absorption(settings)
+        return gems.index(settings), None if gems.absorption_refusal(settings) else gems.absorption(settings)
     index, absorption = species.index(gem.species, wavelengths()), species.absorption(gem.species, wavelengths())
     return index, absorption if absorption.any() else None

@@ -37,6 +37,8 @@ class Settings:
         Strengths, and squared resonances in µm².
     absorption_color : sequence of 3 floats
         Linear Rec.709 that D65 becomes along ``absorption_depth`` metres.
+    absorption_curve : sequence of (float, float), optional
+        Wavelength (nm) and absorption (1/mm), in place of colour and depth; the ends hold outside.
     """
 
     dispersion: str
@@ -45,6 +47,7 @@ class Settings:
     sellmeier_c: Sequence[float]
     absorption_color: Sequence[float] = (1.0, 1.0, 1.0)
     absorption_depth: float = 0.005
+    absorption_curve: Sequence[tuple[float, float]] | None = None
 
 
 @dataclass(frozen=True)
@@ -84,8 +87,38 @@ def refusal(settings: Settings) -> str:
     return ""
 
 
+def absorption_refusal(settings: Settings) -> str:
+    """One sentence that says why an absorption cannot be rendered; empty where it can."""
+    if settings.absorption_curve is not None:
+        return _curve_refusal(settings.absorption_curve)
+    tint, depth = settings.absorption_color, settings.absorption_depth
+    if not all(math.isfinite(c) and 0.0 <= c <= 1.0 for c in tint):
+        return (
+            f"An absorption color of {', '.join(f'{c:.3g}' for c in tint)} would take negative absorption or none that is finite; "
+            "each component has to lie between 0 and 1."
+        )
+    if not (math.isfinite(depth) and depth > 0):
+        return f"An absorption depth of {depth:g} m would mean negative absorption; it has to be above 0."
+    return ""
+
+
+def _curve_refusal(curve: Sequence[tuple[float, float]]) -> str:
+    if not len(curve):
+        return "The absorption curve is empty; import one or add samples first."
+    for nm, value in curve:
+        if not (math.isfinite(nm) and nm > 0):
+            return f"The absorption curve has a sample at {nm:g} nm; wavelengths have to be above 0."
+        if not (math.isfinite(value) and value >= 0):
+            return f"The absorption curve has {value:g} per mm at {nm:g} nm; absorption cannot be negative."
+    return ""
+
+
 def absorption(settings: Settings) -> np.ndarray | None:
-    """σa (1/m) at 360 ... 830 nm from colour and depth; None for a clear stone."""
+    """σa (1/m) at 360 ... 830 nm from a curve, or from colour and depth; None for a clear stone."""
+    if settings.absorption_curve is not None:
+        nm, per_mm = np.asarray(settings.absorption_curve, float).reshape(-1, 2).T
+        sigma = 1e3 * colour.resample(nm, per_mm)
+        return sigma if sigma.any() else None
     if min(settings.absorption_color) >= 1.0:
         return None
     return uplift.absorption(np.clip(settings.absorption_color, 0.0, 1.0), settings.absorption_depth)
@@ -136,9 +169,10 @@ def settings_of_species(name: str, depth: float = 0.005) -> Settings:
     else:
         kind, cauchy = "SELLMEIER", _cauchy_through(exact)
     b, c = _three_terms(row.formula, row.coefficients) or _fitted_terms(exact)
-    transmitted = np.exp(-species.absorption(name, wavelengths()) * depth)
-    tint = np.clip(colour.rec709(colour.white() * transmitted), 0.0, 1.0)
-    return Settings(kind, cauchy, b, c, tuple(float(v) for v in tint), depth)
+    sigma = species.absorption(name, wavelengths())
+    tint = np.clip(colour.rec709(colour.white() * np.exp(-sigma * depth)), 0.0, 1.0)
+    curve = list(zip(wavelengths().tolist(), (1e-3 * sigma).tolist(), strict=True)) if sigma.any() else None
+    return Settings(kind, cauchy, b, c, tuple(float(v) for v in tint), depth, curve)
 
 
 def _three_terms(formula: str, coefficients: dict) -> tuple[Sequence[float], Sequence[float]] | None:

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A gemmologist's light booth: two grey compartments side by side, the same stone in both, and a lamp of another spectrum over each."""
+
+import math
+from collections.abc import Mapping
+
+import bpy
+
+import _scene
+
+WIDTH, DEPTH, HEIGHT = 0.017, 0.016, 0.022
+"""Inside of a compartment, m."""
+WALL = 0.0008
+
+
+def _lamp(name: str, place, target, energy: float, size: float, spectrum: Mapping[str, object]) -> None:
+    lamp = _scene.lamp(name, "AREA", place, target, energy, shape="DISK", size=size)
+    for key, value in spectrum.items():
+        if hasattr(lamp.data, "opal"):
+            setattr(lamp.data.opal, key, value)
+
+
+def booth(cut, species: str, left: Mapping[str, object], right: Mapping[str, object], width: float = 0.0065) -> bpy.types.Scene:
+    """The scene.
+
+    Parameters
+    ----------
+    cut : opal_kernels.cuts.Stone
+        The stone that lies in both compartments.
+    species : str
+        Its `material.opal.gem.species`.
+    left, right : mapping
+        Settings of `light.opal` for the lamps of each compartment.
+    width : float
+        Of the stone, m.
+    """
+    scene = _scene.empty()
+    grey = _scene.matte("Booth", (0.25, 0.25, 0.25))
+    total = 2 * WIDTH + WALL
+    _scene.box("Floor", (-total, -0.05, -0.002), (total, DEPTH, -2e-6), grey)
+    _scene.box("Back", (-total, DEPTH, 0.0), (total, DEPTH + WALL, HEIGHT), grey)
+    _scene.box("Divider", (-0.5 * WALL, -0.05, 0.0), (0.5 * WALL, DEPTH, 2 * HEIGHT), grey)
+    material = _scene.gem(species.title(), species)
+    main = cut.names.index("main")
+    for side, spectrum in ((-1, left), (1, right)):
+        x = side * 0.5 * (WIDTH + WALL)
+        name = "Left" if side < 0 else "Right"
+        stone = _scene.stone(f"{name} stone", cut, width, material)
+        _scene.rest_on_facet(stone, main, (x, 0.004), math.radians(-90.0 + side * 8.0))
+        # A panel that shows the stone's colour, and a small lamp for its fire and the light under it.
+        _lamp(f"{name} panel", (x, 0.011, 1.6 * HEIGHT), (x, 0.004, 0.0), 0.010, 0.012, spectrum)
+        _lamp(f"{name} spot", (x + side * 0.010, -0.014, 1.5 * HEIGHT), (x, 0.004, 0.002), 0.008, 0.0012, spectrum)
+    _scene.plain_world((1.0, 1.0, 1.0), 0.0)
+    _scene.camera((0.0, -0.130, 0.075), (0.0, 0.004, 0.0025), 120.0, fstop=32.0)
+    scene.render.resolution_x, scene.render.resolution_y = 720, 400
+    _scene.limit(scene, 128, 200_000)
+    return scene
