@@ -4,9 +4,8 @@
 import math
 from collections.abc import Mapping
 
-import bpy
-
 import _scene
+import bpy
 
 WIDTH, DEPTH, HEIGHT = 0.017, 0.016, 0.022
 """Inside of a compartment, m."""
