@@ -11,10 +11,10 @@ _previews: Any = None
 
 
 def icon(chart: Any) -> int:
-    """The icon number of an `opal_kernels.charts.Chart`; its picture is made on first use."""
+    """The icon number of an `opal_kernels.charts.wavelength_curve.Chart`; its picture is made on first use."""
     global _previews
     import bpy.utils.previews
-    from opal_kernels import charts
+    from opal_kernels.charts import wavelength_curve
 
     key = f"{hash((chart.values.tobytes(), chart.low, chart.high)):x}"
     if _previews is not None and len(_previews) >= _MOST and key not in _previews:
@@ -22,7 +22,7 @@ def icon(chart: Any) -> int:
     if _previews is None:
         _previews = bpy.utils.previews.new()
     if key not in _previews:
-        pixels = charts.picture(chart)
+        pixels = wavelength_curve.picture(chart)
         preview = _previews.new(key)
         preview.image_size = pixels.shape[1::-1]
         preview.image_pixels_float.foreach_set(pixels.reshape(-1))

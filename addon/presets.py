@@ -99,26 +99,26 @@ def read_out(gem: Any) -> Any:
 
 
 def index_chart(gem: Any) -> Any:
-    """The `opal_kernels.charts.Chart` of a gem's n(λ); None where its numbers cannot be rendered."""
-    from opal_kernels import charts
+    """The `opal_kernels.charts.wavelength_curve.Chart` of a gem's n(λ); None where its numbers cannot be rendered."""
+    from opal_kernels.charts import wavelength_curve
     from opal_kernels import gem as gems
     from opal_kernels.descriptions import wavelengths
     from opal_kernels.optics import species
 
     if gem.species != CUSTOM:
-        return charts.index_chart(species.index(gem.species, wavelengths()))
+        return wavelength_curve.index_chart(species.index(gem.species, wavelengths()))
     settings = settings_of(gem)
-    return None if gems.refusal(settings) else charts.index_chart(gems.index(settings))
+    return None if gems.refusal(settings) else wavelength_curve.index_chart(gems.index(settings))
 
 
 def absorption_chart(gem: Any) -> Any:
-    """The `opal_kernels.charts.Chart` of a gem's absorption; None for a clear stone."""
-    from opal_kernels import charts
+    """The `opal_kernels.charts.wavelength_curve.Chart` of a gem's absorption; None for a clear stone."""
+    from opal_kernels.charts import wavelength_curve
     from opal_kernels import gem as gems
 
     settings = settings_of(gem)
     sigma = None if gems.absorption_refusal(settings) else gems.absorption(settings)
-    return None if sigma is None else charts.absorption_chart(sigma)
+    return None if sigma is None else wavelength_curve.absorption_chart(sigma)
 
 
 def _write(gem: Any, settings: Any) -> None:

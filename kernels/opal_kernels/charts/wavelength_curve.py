@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .descriptions import wavelengths
-from .optics import colour
+from ..descriptions import wavelengths
+from ..optics import colour
 
 # What a chart shows: the eye sees next to nothing outside.
 FIRST_NM, LAST_NM = 380.0, 730.0
