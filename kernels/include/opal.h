@@ -340,13 +340,13 @@ typedef struct opal_render_settings {
   int32_t width, height; /* of the full frame */
   int32_t region[4];     /* x0, y0, x1, y1 of the pixels rendered, y up */
   int32_t samples_per_pass;
-  int32_t photons_per_pass;                /* emitted */
-  int32_t photons_carry;                   /* OPAL_CARRY_* */
-  int32_t gather;                          /* photons in one estimate, at most */
-  float radius;                            /* of the first pass's kernel in metres; 0: chosen from the scene */
-  float radius_shrink;                     /* alpha of Knaus & Zwicker 2011, 2/3 for surfaces */
-  int32_t max_depth;                       /* bounces; Russian roulette ends paths before */
-  int32_t transparent_depth;               /* Transparent BSDFs passed by one ray */
+  int32_t photons_per_pass;  /* emitted */
+  int32_t photons_carry;     /* OPAL_CARRY_* */
+  int32_t gather;            /* photons in one estimate, at most */
+  float radius;              /* of the first pass's kernel in metres; 0: chosen from the scene */
+  float radius_shrink;       /* alpha of Knaus & Zwicker 2011, 2/3 for surfaces */
+  int32_t max_depth;         /* bounces off surfaces; roulette ends paths before. Media scatter on, unless it is 0 */
+  int32_t transparent_depth; /* Transparent BSDFs passed by one ray */
   float wavelength_first, wavelength_last; /* nm */
   uint32_t seed;
   int32_t filter;     /* OPAL_FILTER_* */

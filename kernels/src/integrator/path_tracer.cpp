@@ -14,7 +14,7 @@ namespace opal {
 namespace {
 
 constexpr uint32_t kRouletteStart = 4;  // events before Russian roulette sets in
-constexpr uint32_t kMaxEvents = 4096;   // nothing physical gets there; guards against loops of free passes
+constexpr uint32_t kMaxEvents = 32768;  // nothing physical gets there; guards against loops of free passes
 
 // Where the path last scattered, as the light sampler saw it.
 struct LastEvent {
@@ -250,7 +250,7 @@ class CameraPath {
     if (bounces_ < kRouletteStart) return;
     const float q = clamp((throughput_.max() * eta_scale_) / path_pdf_.average(), 0.0f, 1.0f);
     // Where nothing is lost, a small chance to stop keeps the longest chains finite.
-    const float survive = bounces_ > 256 ? std::min(q, 0.98f) : q;
+    const float survive = bounces_ > 256 ? std::min(q, rough_in_medium_ ? 0.999f : 0.98f) : q;
     if (!(u < survive)) {
       alive_ = false;
       return;
@@ -347,7 +347,7 @@ class CameraPath {
     if (any_varies(scene_, media_)) return travel_in_varying_medium(t_end);
     const MediumHere here = medium_here(scene_, media_, w_);
     const uint32_t dimension = bounce_dimension(events_, 0);
-    const bool may_go_on = rough_bounces_ < uint32_t(std::max(0, settings_.max_depth));
+    const bool may_go_on = may_scatter_again();
     if (!here.emission.is_zero()) add_emitted(here, t_end);
     if (here.scatters() && !final_ray_) gather_along(here, t_end, dimension);
 
@@ -391,7 +391,7 @@ class CameraPath {
     last_.transmissive = true;
     last_.pdf = phase_pdf;
     if (bounces_ == 0) medium_first_ = true;
-    ++bounces_, ++events_, ++rough_bounces_, ++rough_events_;
+    ++bounces_, ++events_, ++rough_events_;
     rough_in_medium_ = true;
     ray_kind_ = OPAL_RAY_SCATTER;
     ray_ = {last_.p, direction, 0, kInfinity, ray_.time};
@@ -400,13 +400,16 @@ class CameraPath {
     return true;
   }
 
+  // Media scatter as often as it takes, milk thousands of times: roulette ends such paths, not the depth, unless that is 0.
+  bool may_scatter_again() const { return settings_.max_depth > 0; }
+
   // The camera's filter where the camera sees a scattering at first hand. What lights it is taken as unpolarised.
   const Polariser *filter() const { return bounces_ == 0 ? &pass_.polariser : nullptr; }
 
   // The same through media that vary: delta tracking, and light looked for where it ends and at equiangular distances.
   bool travel_in_varying_medium(float t_end) {
     const uint32_t dimension = bounce_dimension(events_, 0);
-    const bool may_go_on = rough_bounces_ < uint32_t(std::max(0, settings_.max_depth));
+    const bool may_go_on = may_scatter_again();
     const GatherDistance lamps = GatherDistance::equiangular(scene_, ray_, t_end);
     if (!final_ray_ && !lamps.empty()) connect_at_equiangular(lamps, t_end, dimension);
 
@@ -472,7 +475,7 @@ class CameraPath {
       return true;
     }
     if (bounces_ == 0) medium_first_ = true;
-    ++bounces_, ++events_, ++rough_bounces_, ++rough_events_;
+    ++bounces_, ++events_, ++rough_events_;
     rough_in_medium_ = true;
     ray_kind_ = OPAL_RAY_SCATTER;
     ray_ = {last_.p, direction, 0, kInfinity, ray_.time};

@@ -7,7 +7,7 @@
 namespace opal {
 namespace {
 
-constexpr int kMaxEvents = 1024;
+constexpr int kMaxEvents = 32768;
 constexpr int kRouletteStart = 6;
 
 class PhotonPath {
@@ -137,7 +137,7 @@ class PhotonPath {
     const float pdf = sigma * through[0] * phase_pdf;
     // Absorbed with the albedo's complement.
     const float albedo = here.scattering[0] / sigma;
-    alive = pdf > 0 && sampler_.get1d(dimension + kDimRoulette) < albedo && ++rough_bounces_ <= settings_.max_depth;
+    alive = pdf > 0 && sampler_.get1d(dimension + kDimRoulette) < albedo && settings_.max_depth > 0;
     if (!alive) return true;
     const Spectrum phase = here.phase_value(w_, dot(forward, direction));
     flux_ *= through * here.scattering * here.scattered(w_, forward, direction, nullptr) / (pdf * albedo);
@@ -169,7 +169,7 @@ class PhotonPath {
     }
     const Vec3 forward = ray_.direction;
     const float albedo = here.scattering[0] / here.extinction[0];
-    alive = albedo > 0 && sampler_.get1d(dimension + kDimRoulette) < albedo && ++rough_bounces_ <= settings_.max_depth;
+    alive = albedo > 0 && sampler_.get1d(dimension + kDimRoulette) < albedo && settings_.max_depth > 0;
     if (!alive) return true;
     float phase_pdf = 0;
     const Vec3 direction = here.sample_phase(w_, forward, sampler_.get1d(dimension + kDimBsdfLobe),

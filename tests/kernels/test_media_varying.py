@@ -1,0 +1,307 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Media that vary beside closed forms and quadrature (PHYSICS §5.4, 5.11, 5.12 and 5.17).
+
+Most scenes are an absorbing or scattering box under a uniform sky of radiance 1, seen straight from above. The mean of the
+picture is compared within 4 of its own standard errors, which each test requires to be small.
+"""
+
+import numpy as np
+import pytest
+from opal_kernels import binding, programs
+from opal_kernels.descriptions import Density, EmissionDensity, MaterialFlag, Phase, PhaseKind, World
+from opal_kernels.optics import media
+from opal_kernels.scene import Scene
+from transport_scenes import IDENTITY, box, looking_down, orthographic, perspective, picture, square
+
+WIDE = 400.0  # of slabs, in units of their depth
+
+
+def even_grid(scene, low, high, value=1.0, cells=10):
+    """A grid of one value that reaches a voxel beyond the box."""
+    low, high = np.asarray(low, float), np.asarray(high, float)
+    step = (high - low) / (cells - 3)
+    transform = np.eye(4)
+    transform[range(3), range(3)], transform[:3, 3] = step, low - step
+    return scene.add_grid(np.full((cells, cells, cells), value), transform)
+
+
+# The same homogeneous medium, said in ways that take different paths through the tracer.
+WAYS = {
+    "closed form": lambda scene, low, high: (1.0, {}),
+    "grid": lambda scene, low, high: (0.5, {"density": Density.GRID, "density_grid": 1 + even_grid(scene, low, high, 2.0)}),
+    "noise without contrast": lambda scene, low, high: (2.0, {"density": Density.NOISE, "noise_contrast": 0.0, "noise_detail": 2.0}),
+    "below the base height": lambda scene, low, high: (1.0, {"density": Density.HEIGHT, "base_height": 100.0}),
+}
+
+
+def filled_box(scene, low, high, extinction, albedo=0.0, way="closed form", phase=None, **fields):
+    factor, more = WAYS[way](scene, low, high)
+    medium = scene.add_medium(np.asarray(extinction) * factor, albedo, phase, **{**more, **fields})
+    material = scene.add_material(flags=MaterialFlag.NO_SURFACE, medium=medium)
+    scene.add_instances(scene.add_mesh(*box(low, high)), IDENTITY, [material])
+
+
+def black_floor(scene, z):
+    corners, faces = square(4 * WIDE, z)
+    scene.add_instances(scene.add_mesh(corners, faces), IDENTITY, [scene.add_material(programs.diffuse((0, 0, 0)))])
+
+
+def mean_and_error(scene, camera=None, passes=4, size=16, seeds=(0, 1, 2, 3), **settings):
+    scene.set_camera(**(camera or orthographic(0.4, looking_down(10.0))))
+    scene.commit()
+    settings = {"samples_per_pass": 64, "max_depth": 1024, "photons_per_pass": 0, **settings}
+    images = np.array([picture(scene, passes, size, seed=seed, **settings).mean(axis=(0, 1)) for seed in seeds])
+    return images.mean(axis=0), images.std(axis=0, ddof=1) / len(seeds) ** 0.5
+
+
+def holds(mean, error, expected, largest_error):
+    assert np.max(error) < largest_error, f"too noisy to tell: {error}"
+    # Four seeds know their spread badly: what the test requires of it bounds it from below.
+    allowed = 4 * np.maximum(error, largest_error / 3)
+    assert np.all(np.abs(mean - expected) < allowed), f"{mean} ± {error}, expected {expected}"
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_constant_density_lets_through_what_beer_and_lambert_say(way):
+    with Scene(threads=2) as scene:
+        filled_box(scene, (-1, -1, -1), (1, 1, 1), 0.6, way=way)
+        scene.set_world(World(programs.emission()))
+        holds(*mean_and_error(scene, passes=2), np.exp(-1.2), 0.004)
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_finite_slab_reflects_what_the_radiative_transfer_tables_say(way):
+    """R of a slab of depth 4, albedo 1, isotropic, normal incidence: 0.6911 ± 0.00025 (PHYSICS §5.12), by reciprocity."""
+    with Scene(threads=2) as scene:
+        filled_box(scene, (-WIDE, -WIDE, 0), (WIDE, WIDE, 1), 4.0, 1.0, way)
+        black_floor(scene, -0.01)
+        scene.set_world(World(programs.emission()))
+        holds(*mean_and_error(scene, passes=1), 0.6911, 0.004)
+
+
+@pytest.mark.parametrize("way", ["closed form", "grid"])
+@pytest.mark.parametrize("albedo, expected", [(0.5, 0.115226), (0.9, 0.414947), (0.999, 0.912845)])
+def test_a_half_space_reflects_chandrasekhars_plane_albedo(way, albedo, expected):
+    """1 - H(1) sqrt(1 - albedo) (PHYSICS §5.11): as many scatterings as it takes."""
+    with Scene(threads=2) as scene:
+        filled_box(scene, (-WIDE, -WIDE, -1), (WIDE, WIDE, 1), 300.0, albedo, way)
+        scene.set_world(World(programs.emission()))
+        holds(*mean_and_error(scene, passes=1, size=8), expected, 0.008)
+    assert media.half_space_albedo(1.0, albedo) == pytest.approx(expected, abs=2e-5)
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_single_scattering_of_the_sun_in_a_slab(way):
+    """Without bounces: L = albedo F f mu0/(mu + mu0) (1 - exp(-depth (1/mu + 1/mu0))) with irradiance F (PHYSICS §5.4)."""
+    with Scene(threads=2) as scene:
+        filled_box(scene, (-WIDE, -WIDE, 0), (WIDE, WIDE, 1), 1.0, 0.8, way)
+        scene.add_light(type=2, power=1.0, transform=looking_down(5.0))
+        mean, error = mean_and_error(scene, passes=4, max_depth=0)
+        holds(mean / 0.8, error / 0.8, media.single_scattering_slab(1.0, 1.0, 1.0)[0], 0.0005)
+
+
+def test_a_density_that_grows_linearly():
+    """sigma(t) = c t: T = exp(-c d^2 / 2) (PHYSICS §5.17), for three depths of a ramp."""
+    n, c = 40, 1.5
+    ramp = np.broadcast_to(c * (np.arange(n) / (n - 1) * 2.0), (n, n, n))  # grows with z, 0 to 2 m
+    transform = np.diag([2 / (n - 1)] * 3 + [1.0])
+    transform[:2, 3] = -1
+    for depth in (0.5, 1.0, 1.8):
+        with Scene(threads=2) as scene:
+            grid = scene.add_grid(ramp, transform)
+            filled_box(scene, (-0.9, -0.9, 0), (0.9, 0.9, depth), 1.0, density=Density.GRID, density_grid=1 + grid)
+            scene.set_world(World(programs.emission()))
+            holds(*mean_and_error(scene, passes=2), np.exp(-c * depth**2 / 2), 0.004)
+
+
+def trilinear(values, p):
+    """Reference interpolation, 0 from one voxel beyond the grid on."""
+    padded = np.pad(values, 1)
+    s = np.clip(np.asarray(p) + 1, 0, np.array(padded.shape) - 1.000001)
+    i = s.astype(int)
+    f = s - i
+    out = np.zeros(len(s))
+    for corner in np.ndindex(2, 2, 2):
+        weight = np.prod(np.where(corner, f, 1 - f), axis=1)
+        out += weight * padded[tuple((i + np.array(corner)).T)]
+    return out
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_random_sparse_grids_let_through_what_quadrature_says(seed):
+    """Bricks in which a few voxels are filled at random, turned and sheared; each pixel is one ray, summed over the picture."""
+    random = np.random.default_rng(seed)
+    shape = random.integers(9, 30, 3)
+    values = random.exponential(2.0, shape) * (random.random(shape) < 0.15)
+    to_object = np.eye(4)
+    to_object[:3, :3] = np.diag(2 / shape) @ (np.eye(3) + 0.15 * random.standard_normal((3, 3)))
+    to_object[:3, 3] = -to_object[:3, :3] @ (shape / 2)
+    pixels, half = 24, 0.7
+    x = (np.arange(pixels) + 0.5) / pixels * 2 * half - half
+    to_index = np.linalg.inv(to_object)
+    z = (np.arange(2000) + 0.5) / 2000 * 4 - 2
+    expected = np.empty((pixels, pixels))
+    for j, v in enumerate(x):
+        for i, u in enumerate(x):
+            p = np.stack([np.full_like(z, u), np.full_like(z, v), z, np.ones_like(z)]).T @ to_index.T
+            expected[j, i] = np.exp(-trilinear(values, p[:, :3]).sum() * 4 / 2000)
+    with Scene(threads=2) as scene:
+        grid = scene.add_grid(values, to_object)
+        filled_box(scene, (-2, -2, -2), (2, 2, 2), 1.0, density=Density.GRID, density_grid=1 + grid)
+        scene.set_world(World(programs.emission()))
+        scene.set_camera(**orthographic(half, looking_down(10.0)))
+        scene.commit()
+        image = picture(scene, 8, pixels, samples_per_pass=64, photons_per_pass=0, filter=0, filter_width=0.02)[..., 1]
+    # A pixel is the mean of n draws of 0 or 1.
+    error = np.sqrt(np.maximum(expected * (1 - expected), 1e-4) / 512)
+    deviation = (image - expected) / error
+    assert abs(deviation.mean()) < 4 / pixels, f"mean deviation {deviation.mean():.3f} standard errors"
+    assert np.abs(deviation).max() < 5.5 and deviation.std() < 1.15
+
+
+def test_chromatic_extinction_brings_no_colour_noise():
+    """Through a grid with extinction that triples over the spectrum each channel is as its own quadrature says."""
+    extinction = np.linspace(0.5, 1.5, 471)
+    means = {}
+    for way in ("closed form", "grid"):
+        with Scene(threads=2) as scene:
+            filled_box(scene, (-1, -1, -1), (1, 1, 1), extinction, way=way)
+            scene.set_world(World(programs.emission()))
+            means[way] = mean_and_error(scene, passes=2)
+    difference = means["grid"][0] - means["closed form"][0]
+    error = np.hypot(means["grid"][1], means["closed form"][1])
+    assert error.max() < 0.004
+    assert np.all(np.abs(difference) < 4 * np.maximum(error, 0.0013)), f"{difference} ± {error}"
+    assert means["closed form"][0][2] > 1.3 * means["closed form"][0][0], "blue is let through, red is not"
+
+
+def test_emission_without_extinction_adds_up_along_the_ray():
+    """A glowing grid that takes nothing: the radiance is the integral of the emission, 1/m times 2 m times one half."""
+    with Scene(threads=2) as scene:
+        grid = even_grid(scene, (-1, -1, -1), (1, 1, 1), 0.5)
+        filled_box(
+            scene,
+            (-1, -1, -1),
+            (1, 1, 1),
+            0.0,
+            emission=np.ones(471),
+            emission_density=EmissionDensity.GRID,
+            emission_density_grid=1 + grid,
+        )
+        scene.set_world(None)
+        varying = mean_and_error(scene, passes=2)
+    with Scene(threads=2) as scene:
+        filled_box(scene, (-1, -1, -1), (1, 1, 1), 0.0, emission=np.full(471, 0.5))
+        scene.set_world(None)
+        exact = mean_and_error(scene, passes=2)
+    holds(varying[0] / exact[0], varying[1] / exact[0], 1.0, 0.01)
+
+
+def test_glow_and_extinction_together():
+    """e (1 - exp(-sigma d)) / sigma, in a grid."""
+    with Scene(threads=2) as scene:
+        filled_box(scene, (-1, -1, -1), (1, 1, 1), 1.2, way="grid", emission=np.full(471, 0.5))
+        scene.set_world(None)
+        varying = mean_and_error(scene, passes=4)
+    with Scene(threads=2) as scene:
+        filled_box(scene, (-1, -1, -1), (1, 1, 1), 1.2, emission=np.full(471, 1.0))
+        scene.set_world(None)
+        exact = mean_and_error(scene, passes=4)
+    holds(varying[0] / exact[0], varying[1] / exact[0], 1.0, 0.01)
+
+
+def test_a_lamp_inside_a_varying_medium_is_as_bright_as_in_a_homogeneous_one():
+    """Equiangular distances, collisions and hits of the lamp are weighted to one; forward scattering, a small lamp on view."""
+    found = {}
+    for way in ("closed form", "grid"):
+        with Scene(threads=2) as scene:
+            filled_box(scene, (-1, -1, -1), (1, 1, 1), 1.5, 0.8, way, Phase(PhaseKind.HENYEY_GREENSTEIN, 0.6))
+            scene.add_light(type=0, power=50.0, radius=0.2, transform=looking_down(0.3), soft_falloff=0)
+            scene.set_world(None)
+            found[way] = mean_and_error(scene, perspective(1.0, looking_down(4.0)), passes=8, max_depth=8)
+    ratio = found["grid"][0] / found["closed form"][0]
+    error = np.hypot(found["grid"][1] / found["grid"][0], found["closed form"][1] / found["closed form"][0])
+    assert error.max() < 0.03
+    assert np.all(np.abs(ratio - 1) < 4 * np.maximum(error, 0.01)), f"{ratio} ± {error}"
+
+
+def test_overlapping_media_add():
+    with Scene(threads=2) as scene:
+        filled_box(scene, (-1, -1, -1), (1, 1, 1), 0.3)
+        filled_box(scene, (-1.1, -1.1, -0.5), (1.1, 1.1, 2), 0.4, way="grid")
+        scene.set_world(World(programs.emission()))
+        holds(*mean_and_error(scene, passes=2), np.exp(-0.6 - 0.4 * 2.5), 0.004)
+
+
+def test_a_camera_inside_sees_through_the_rest():
+    with Scene(threads=2) as scene:
+        filled_box(scene, (-1, -1, -1), (1, 1, 1), 0.8, way="grid")
+        scene.set_world(World(programs.emission()))
+        holds(*mean_and_error(scene, orthographic(0.4, looking_down(0.25)), passes=2), np.exp(-1.0), 0.004)
+
+
+def test_haze_that_thins_with_height():
+    """From height 0 straight down from above everything: depth sigma H; the sky shines through."""
+    with Scene(threads=2) as scene:
+        scene.set_world_medium(scene.add_medium(0.01, 0.0, density=Density.HEIGHT, scale_height=70.0))
+        scene.set_world(World(programs.emission()))
+        up = np.diag([1.0, -1.0, -1.0, 1.0])[:3]
+        holds(*mean_and_error(scene, orthographic(0.4, up), passes=2), np.exp(-0.7), 0.004)
+
+
+def test_albedo_one_without_absorption_is_a_white_furnace():
+    """Whatever the noise, what scatters only cannot be seen in front of an even sky."""
+    with Scene(threads=2) as scene:
+        filled_box(scene, (-1, -1, -1), (1, 1, 1), 6.0, 1.0, density=Density.NOISE, noise_scale=0.4, noise_detail=3.0, noise_contrast=4.0)
+        scene.set_world(World(programs.emission()))
+        holds(*mean_and_error(scene, passes=2), 1.0, 0.004)
+
+
+def test_noise_depends_on_its_seed_and_nothing_else():
+    def image(seed, threads):
+        with Scene(threads=threads) as scene:
+            fields = {"density": Density.NOISE, "noise_scale": 0.5, "noise_contrast": 5.0, "noise_seed": seed}
+            filled_box(scene, (-1, -1, -1), (1, 1, 1), 3.0, **fields)
+            scene.set_world(World(programs.emission()))
+            scene.set_camera(**orthographic(0.9, looking_down(10.0)))
+            scene.commit()
+            return picture(scene, 1, 32, samples_per_pass=16, photons_per_pass=0)
+
+    assert np.array_equal(image(1, 1), image(1, 2))
+    assert np.abs(image(1, 2) - image(2, 2)).mean() > 0.05
+
+
+def test_bad_voxels_are_counted_and_taken_as_nothing():
+    values = np.ones((12, 5, 7))
+    values[3, 2, 1], values[4, 4, 4], values[11, 0, 6] = np.nan, np.inf, -2.0
+    with Scene(threads=1) as scene:
+        grid = binding.scene_add_grid(scene.handle, values.shape, np.eye(4))
+        assert binding.scene_set_grid_block(scene.handle, grid, values) == (2, 1)
+
+
+def test_empty_space_takes_no_memory():
+    """256 voxels along each axis, one in a hundred bricks filled: 1 % of the dense size, and the table."""
+    with Scene(threads=1) as scene:
+        before = scene.statistics["memory_bytes"]
+        grid = binding.scene_add_grid(scene.handle, (256, 256, 256), np.eye(4))
+        binding.scene_set_grid_block(scene.handle, grid, np.ones((52, 52, 52)), (100, 100, 100))
+        scene.commit()
+        assert scene.statistics["memory_bytes"] - before < 0.06 * 256**3 * 4
+
+
+@pytest.mark.parametrize(
+    "size, channels, transform, sentence",
+    [
+        ((0, 4, 4), 1, np.eye(4), "between 1 and 16384"),
+        ((4, 4, 4), 2, np.eye(4), "1 or 3 channels"),
+        ((4, 4, 4), 1, np.zeros((4, 4)), "scaled to nothing"),
+    ],
+)
+def test_impossible_grids_are_refused_in_a_sentence(size, channels, transform, sentence):
+    with Scene(threads=1) as scene, pytest.raises(binding.OpalError, match=sentence):
+        binding.scene_add_grid(scene.handle, size, transform, channels)
+
+
+def test_a_medium_needs_a_grid_that_exists():
+    with Scene(threads=1) as scene, pytest.raises(binding.OpalError, match="grid that does not exist"):
+        scene.add_medium(1.0, density=Density.GRID, density_grid=7)
