@@ -151,6 +151,8 @@ typedef struct opal_medium_desc {
 } opal_medium_desc;
 
 OPAL_EXPORT int32_t opal_scene_add_medium(opal_scene *scene, const opal_medium_desc *medium);
+/* Which compositing layer shows what the medium scatters: 0 media (as added), 1 rainbows. */
+OPAL_EXPORT int32_t opal_scene_set_medium_layer(opal_scene *scene, int32_t medium, int32_t layer);
 /* The medium that fills the world, outside of everything too; -1 for none. */
 OPAL_EXPORT int32_t opal_scene_set_world_medium(opal_scene *scene, int32_t medium);
 
@@ -382,11 +384,25 @@ enum {
   OPAL_PASS_MEDIUM = 9,    /* 3 */
   OPAL_PASS_SPECTRAL = 10, /* spectral_bins: radiance per nm, W/(m2 sr nm) with D65-white of luminance 1 as unit */
   OPAL_PASS_NOISE = 11,    /* 1: estimated standard error of the luminance */
-  OPAL_PASS_COUNT = 12
+  /* Layers for compositing over a picture that another engine made (src/integrator/layers.h); they add up to Combined,
+   * Behind apart. 4 each: premultiplied, alpha is the share of camera rays whose first event fell there. */
+  OPAL_PASS_LAYER_BASE = 12,   /* ordinary surfaces without caustics, dimmed by media, black where gems would light them */
+  OPAL_PASS_LAYER_BEHIND = 13, /* the base as it would be if media before the camera took nothing away */
+  OPAL_PASS_LAYER_CAUSTICS =
+      14, /* light that gems and caustics bring to ordinary surfaces, and media outside of the camera's view */
+  OPAL_PASS_LAYER_GEMS = 15,    /* gems and what is seen through them */
+  OPAL_PASS_LAYER_MEDIA = 16,   /* what media scatter or give off towards the camera */
+  OPAL_PASS_LAYER_RAINBOW = 17, /* the same of media that were set to the layer of rainbows */
+  OPAL_PASS_COUNT = 18
 };
 
 /* Writes the region's pixels, rows from the bottom up, interleaved channels. */
 OPAL_EXPORT int32_t opal_film_read(const opal_render *render, int32_t pass, float *out);
+/* The film's sums as they are kept, in double precision: exact, so films of different passes add up to the same bits in any
+ * order. OPAL_PASS_NOISE gives the sums of squared luminance. Same layout as opal_film_read; divide by the passes done.
+ * Depth is not a sum but the depth of the pass that opal_film_depth_pass names (-1: none). */
+OPAL_EXPORT int32_t opal_film_read_sums(const opal_render *render, int32_t pass, double *out);
+OPAL_EXPORT int32_t opal_film_depth_pass(const opal_render *render);
 /* Average of the noise pass relative to brightness, for noise_threshold; negative before two passes. */
 OPAL_EXPORT float opal_film_noise(const opal_render *render);
 

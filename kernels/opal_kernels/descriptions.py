@@ -141,6 +141,12 @@ class Pass(IntEnum):
     MEDIUM = 9
     SPECTRAL = 10
     NOISE = 11
+    LAYER_BASE = 12
+    LAYER_BEHIND = 13
+    LAYER_CAUSTICS = 14
+    LAYER_GEMS = 15
+    LAYER_MEDIA = 16
+    LAYER_RAINBOW = 17
 
 
 # Channels of each pass; the spectral one has as many as the settings ask for.
@@ -156,6 +162,12 @@ PASS_CHANNELS = {
     Pass.CAUSTICS: 3,
     Pass.MEDIUM: 3,
     Pass.NOISE: 1,
+    Pass.LAYER_BASE: 4,
+    Pass.LAYER_BEHIND: 4,
+    Pass.LAYER_CAUSTICS: 4,
+    Pass.LAYER_GEMS: 4,
+    Pass.LAYER_MEDIA: 4,
+    Pass.LAYER_RAINBOW: 4,
 }
 
 IDENTITY = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0))

@@ -14,6 +14,7 @@ import numpy as np
 
 from . import binding
 from .descriptions import PASS_CHANNELS, Pass, RenderSettings
+from .film_sums import FilmSums
 from .scene import Scene
 
 
@@ -36,11 +37,14 @@ class Render:
     ----------
     passes_done : int
         Passes in the film.
+    numbers : list of int
+        Which they are, in the order rendered.
     """
 
     def __init__(self, scene: Scene, settings: RenderSettings | None = None, **fields: Any) -> None:
         self._handle = 0
         self.passes_done = 0
+        self.numbers: list[int] = []
         self.settings = settings if settings is not None else RenderSettings(**fields)
         self._scene = scene  # keeps it alive
         self._handle = binding.render_create(scene.handle, self.settings)
@@ -91,6 +95,7 @@ class Render:
         """
         binding.render_pass(self.handle, number)
         self.passes_done += 1
+        self.numbers.append(number)
 
     def run(self, passes: int, each: Callable[[int], None] | None = None) -> Render:
         """Renders passes 0 .. ``passes`` - 1, calling ``each`` with the number of every finished one."""
@@ -125,6 +130,19 @@ class Render:
         number = Pass[which] if isinstance(which, str) else Pass(which)
         channels = self.settings.spectral_bins if number is Pass.SPECTRAL else PASS_CHANNELS[number]
         return binding.film_read(self.handle, number, *self.size, channels)
+
+    def sums(self) -> FilmSums:
+        """What the film holds, exactly: to be saved, or merged with other passes of the same render."""
+        kept = {Pass.COMBINED, *(Pass(p) for p in self.settings.passes)} - {Pass.NOISE}
+        if not self.settings.spectral_bins:
+            kept -= {Pass.SPECTRAL}
+        channels = {Pass.SPECTRAL: self.settings.spectral_bins}
+        return FilmSums(
+            passes=tuple(self.numbers),
+            depth_pass=binding.film_depth_pass(self.handle),
+            sums={p: binding.film_read_sums(self.handle, p, *self.size, channels.get(p)) for p in sorted(kept)},
+            squares=binding.film_read_sums(self.handle, Pass.NOISE, *self.size),
+        )
 
     @property
     def noise(self) -> float:

@@ -164,6 +164,10 @@ class Scene:
             medium.phase = binding.scene_add_phase(self.handle, phase)
         return binding.scene_add_medium(self.handle, medium)
 
+    def set_medium_layer(self, medium: int, rainbow: bool) -> None:
+        """Says whether what a medium scatters goes to the compositing layer of rainbows instead of that of media."""
+        binding.scene_set_medium_layer(self.handle, medium, int(rainbow))
+
     def set_world_medium(self, medium: int) -> None:
         """Fills the world with a medium; -1 takes it away."""
         binding.scene_set_world_medium(self.handle, medium)

@@ -8,8 +8,10 @@ from .arrays import as_array, program_struct
 from .functions import SIGNATURES
 from .library import API_VERSION, Cancelled, OpalError, cpu_level, last_error, library
 from .render import (
+    film_depth_pass,
     film_noise,
     film_read,
+    film_read_sums,
     render_cancel,
     render_create,
     render_destroy,
@@ -35,6 +37,7 @@ from .scene import (
     scene_intersect,
     scene_set_camera,
     scene_set_grid_block,
+    scene_set_medium_layer,
     scene_set_transforms,
     scene_set_world,
     scene_set_world_medium,
@@ -51,7 +54,9 @@ __all__ = [
     "as_array",
     "cpu_level",
     "film_noise",
+    "film_depth_pass",
     "film_read",
+    "film_read_sums",
     "last_error",
     "library",
     "program_struct",
@@ -80,6 +85,7 @@ __all__ = [
     "scene_set_transforms",
     "scene_set_world",
     "scene_set_grid_block",
+    "scene_set_medium_layer",
     "scene_set_world_medium",
     "scene_update_material",
 ]

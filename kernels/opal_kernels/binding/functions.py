@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ctypes import POINTER, c_char_p, c_float, c_int32, c_int64, c_void_p
+from ctypes import POINTER, c_char_p, c_double, c_float, c_int32, c_int64, c_void_p
 from typing import Any
 
 from .structures import (
@@ -41,6 +41,7 @@ SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
         c_int32,
         [c_void_p, c_int32, IntPointer, IntPointer, FloatPointer, POINTER(GridFaultsStruct)],
     ),
+    "opal_scene_set_medium_layer": (c_int32, [c_void_p, c_int32, c_int32]),
     "opal_scene_set_world_medium": (c_int32, [c_void_p, c_int32]),
     "opal_scene_add_material": (c_int32, [c_void_p, POINTER(MaterialStruct)]),
     "opal_scene_update_material": (c_int32, [c_void_p, c_int32, POINTER(MaterialStruct)]),
@@ -60,6 +61,8 @@ SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "opal_render_cancel": (None, [c_void_p]),
     "opal_render_progress": (c_float, [c_void_p]),
     "opal_film_read": (c_int32, [c_void_p, c_int32, FloatPointer]),
+    "opal_film_read_sums": (c_int32, [c_void_p, c_int32, POINTER(c_double)]),
+    "opal_film_depth_pass": (c_int32, [c_void_p]),
     "opal_film_noise": (c_float, [c_void_p]),
     "opal_render_get_statistics": (c_int32, [c_void_p, POINTER(RenderStatisticsStruct)]),
 }

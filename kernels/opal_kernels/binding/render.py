@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ctypes import byref, c_int32
+from ctypes import POINTER, byref, c_double, c_int32
 from typing import Any
 
 import numpy as np
@@ -73,6 +73,22 @@ def film_read(render: int, which: int, height: int, width: int, channels: int | 
     out = np.empty((height, width, channels or PASS_CHANNELS[Pass(which)]), np.float32)
     checked(library().opal_film_read(render, int(which), pointer(out)))
     return out
+
+
+def film_read_sums(render: int, which: int, height: int, width: int, channels: int | None = None) -> np.ndarray:
+    """The film's sums over passes: float64 of shape (height, width, channels), rows from the bottom up.
+
+    Exact in double precision, so the sums of disjoint passes add up in any order. ``Pass.NOISE`` gives sums of squared luminance,
+    ``Pass.DEPTH`` the depth itself.
+    """
+    out = np.empty((height, width, channels or PASS_CHANNELS[Pass(which)]), np.float64)
+    checked(library().opal_film_read_sums(render, int(which), out.ctypes.data_as(POINTER(c_double))))
+    return out
+
+
+def film_depth_pass(render: int) -> int:
+    """Number of the pass whose depth the film keeps; -1 before the first."""
+    return library().opal_film_depth_pass(render)
 
 
 def film_noise(render: int) -> float:

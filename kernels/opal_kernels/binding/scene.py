@@ -187,6 +187,11 @@ def scene_set_grid_block(scene: int, grid: int, values: Any, origin: Sequence[in
     return int(faults.not_finite), int(faults.negative)
 
 
+def scene_set_medium_layer(scene: int, medium: int, layer: int) -> None:
+    """Says which compositing layer a medium's light goes to: 0 media, 1 rainbows."""
+    checked(library().opal_scene_set_medium_layer(scene, medium, layer))
+
+
 def scene_set_world_medium(scene: int, medium: int) -> None:
     """Fills the world with a medium; -1 takes it away."""
     checked(library().opal_scene_set_world_medium(scene, medium))

@@ -329,6 +329,15 @@ int32_t opal_scene_set_grid_block(opal_scene *scene, int32_t grid, const int32_t
   });
 }
 
+int32_t opal_scene_set_medium_layer(opal_scene *scene, int32_t medium, int32_t layer) {
+  return guarded([&] {
+    require(scene && medium >= 0 && medium < int32_t(scene->media.size()), "No such medium");
+    require(layer == 0 || layer == 1, "There are two layers of media: 0 and 1");
+    scene->media[size_t(medium)].rainbow = layer == 1;
+    return 0;
+  });
+}
+
 int32_t opal_scene_set_world_medium(opal_scene *scene, int32_t medium) {
   return guarded([&] {
     require(scene && medium < int32_t(scene->media.size()), "No such medium");
@@ -629,6 +638,16 @@ int32_t opal_film_read(const opal_render *render, int32_t pass, float *out) {
     return 0;
   });
 }
+
+int32_t opal_film_read_sums(const opal_render *render, int32_t pass, double *out) {
+  return guarded([&] {
+    require(render && out, "No render");
+    require(render->read_sums(pass, out), "The film does not keep this pass");
+    return 0;
+  });
+}
+
+int32_t opal_film_depth_pass(const opal_render *render) { return render ? render->depth_pass() : -1; }
 
 float opal_film_noise(const opal_render *render) { return render ? render->noise() : -1.0f; }
 

@@ -254,6 +254,19 @@ Spectrum bsdf_eval_rough(const ClosureSet &set, const ShadingPoint &sp, const Ve
   return uplift(f, w);
 }
 
+Spectrum bsdf_eval_diffuse_alone(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w) {
+  Vec3 f;
+  for (int i = 0; i < set.count; ++i)
+    if (is_diffuse(set.lobes[i])) f += eval_lobe(set.lobes[i], sp, wi, Transport::Radiance).f * set.lobes[i].bare;
+  return uplift(f, w);
+}
+
+bool bsdf_is_only_diffuse(const ClosureSet &set) {
+  for (int i = 0; i < set.count; ++i)
+    if (!is_diffuse(set.lobes[i]) && set.lobes[i].kind != LobeKind::Transparent) return false;
+  return true;
+}
+
 Vec3 bsdf_transparency(const ClosureSet &set) {
   Vec3 through;
   for (int i = 0; i < set.count; ++i)

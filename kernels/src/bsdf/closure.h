@@ -47,6 +47,7 @@ struct Lobe {
   Vec3 reflection_tint{1, 1, 1}, transmission_tint{1, 1, 1};
   float exponent = -1;     // Generalized: below 0 uses the dielectric curve
   float energy_scale = 1;  // multiple scattering between facets
+  float bare = 1;          // factor that undoes the dimming by glossy layers above (Principled diffuse)
   float params[4] = {};
 };
 
@@ -114,6 +115,10 @@ bool bsdf_has_smooth_lobe(const ClosureSet &set);
 // The part of bsdf_eval (f |cos|) that lobes of GGX alpha above kSharpAlpha and diffuse ones bring: where photons are left.
 Spectrum bsdf_eval_rough(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w,
                          Transport transport);
+// The part of bsdf_eval (f |cos|) of diffuse lobes, as it is without glossy layers above them; what remains of a material once
+// glossy scattering is left out, as Cycles leaves it out after a diffuse bounce when caustics are off.
+Spectrum bsdf_eval_diffuse_alone(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w);
+bool bsdf_is_only_diffuse(const ClosureSet &set);
 // Straight-through transmittance (Transparent lobes) and its complement.
 Vec3 bsdf_transparency(const ClosureSet &set);
 

@@ -20,6 +20,7 @@ struct Layers {
   const PrincipledInputs &in;
   Vec3 weight;  // of what is still to come
   Vec3 normal, mirror, coat_normal;
+  float shown = 1;  // what glossy layers so far let through
 
   void alpha() {
     const float alpha = saturate(in.alpha);
@@ -47,7 +48,7 @@ struct Layers {
       lobe->eta = ior;
       weigh_lobe(*lobe, sp.wo);
       preserve_energy(*lobe, sp.wo, kWhite * average_fresnel_dielectric(ior));
-      weight = weight_below(finished(*lobe), weight);
+      dim_below(*lobe);
     }
     const Vec3 tint = max(in.coat_tint, Vec3{});
     if (tint == kWhite) return;
@@ -102,16 +103,24 @@ struct Layers {
       const float r0 = f0_from_index(eta), s = saturate((average_fresnel_dielectric(eta) - r0) / (1 - r0));
       preserve_energy(*lobe, sp.wo, lerp(lobe->f0, kWhite, s));
     }
-    weight = weight_below(finished(*lobe), weight);
+    dim_below(*lobe);
   }
 
   void diffuse() {
     const Vec3 color = max(in.base_color, Vec3{});
     const float subsurface = saturate(in.subsurface_weight), roughness = saturate(in.diffuse_roughness);
+    const int before = set.count;
     add_diffuse_lobe(set, sp, saturate(color) * weight * subsurface, color, 0, normal);
     add_diffuse_lobe(set, sp, color * weight * (1 - subsurface), color, roughness, normal);
+    for (int i = before; i < set.count; ++i) set.lobes[i].bare = 1 / std::max(shown, 1e-3f);
   }
 
+  // What lies below a glossy lobe gets what the lobe does not reflect; all channels are dimmed alike.
+  void dim_below(Lobe &lobe) {
+    const Vec3 below = weight_below(finished(lobe), weight);
+    if (average(weight) > 0) shown *= average(below) / average(weight);
+    weight = below;
+  }
   float ior() const { return std::max(in.ior, 1e-5f); }
   void set_facets(Lobe &lobe) const {
     set_anisotropy(lobe, saturate(in.roughness), saturate(in.anisotropic), in.anisotropic_rotation, normal, in.tangent);
@@ -127,7 +136,7 @@ struct Layers {
 
 void add_principled(ClosureSet &set, const ShadingPoint &sp, const Vec3 &weight, const PrincipledInputs &in) {
   const Vec3 normal = shading_normal(in.normal, sp);
-  Layers layers{set, sp, in, weight, normal, mirror_normal(normal, sp), shading_normal(in.coat_normal, sp)};
+  Layers layers{set, sp, in, weight, normal, mirror_normal(normal, sp), shading_normal(in.coat_normal, sp), 1};
   layers.alpha();
   layers.sheen();
   layers.coat();

@@ -21,7 +21,13 @@ bool is_kept(uint32_t passes, int pass, int spectral_bins) {
 
 int pass_channels(int pass, int spectral_bins) {
   switch (pass) {
-    case OPAL_PASS_COMBINED: return 4;
+    case OPAL_PASS_COMBINED:
+    case OPAL_PASS_LAYER_BASE:
+    case OPAL_PASS_LAYER_BEHIND:
+    case OPAL_PASS_LAYER_CAUSTICS:
+    case OPAL_PASS_LAYER_GEMS:
+    case OPAL_PASS_LAYER_MEDIA:
+    case OPAL_PASS_LAYER_RAINBOW: return 4;
     case OPAL_PASS_DEPTH:
     case OPAL_PASS_NOISE: return 1;
     case OPAL_PASS_SPECTRAL: return spectral_bins;
@@ -79,6 +85,13 @@ bool Film::read(int pass, float *out) const {
   const double scale = pass == OPAL_PASS_DEPTH ? 1.0 : n_passes > 0 ? 1.0 / n_passes : 0.0;
   for (size_t i = 0; i < sums_[pass].size(); ++i) out[i] = float(sums_[pass][i] * scale);
   return true;
+}
+
+bool Film::read_sums(int pass, double *out) const {
+  if (pass < 0 || pass >= OPAL_PASS_COUNT) return false;
+  const std::vector<double> &sums = pass == OPAL_PASS_NOISE ? luminance_squared_ : sums_[pass];
+  std::copy(sums.begin(), sums.end(), out);
+  return !sums.empty();
 }
 
 float Film::noise() const {

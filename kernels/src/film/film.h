@@ -34,6 +34,9 @@ class Film {
   void add(const PassBuffer &buffer, int pass_number);
   // Means over the passes added; false when the pass is not kept.
   bool read(int pass, float *out) const;
+  // The sums themselves (NOISE: of squared luminance); false when the pass is not kept.
+  bool read_sums(int pass, double *out) const;
+  int depth_pass() const { return depth_pass_; }
   // Mean over pixels of the luminance's standard error, relative to the mean luminance; negative before two passes.
   float noise() const;
 

@@ -5,6 +5,7 @@
 #include "camera/camera.h"
 #include "film/film.h"
 #include "film/pixel_filter.h"
+#include "integrator/layers.h"
 #include "media/segment.h"
 #include "photons/photon_map.h"
 #include "scene/scene.h"
@@ -21,6 +22,11 @@ static_assert(kWavelengthSets * kWavelengths == kPassWavelengths);
 
 // Streams of the sampler: pixels count from 0, photons and passes sit above every pixel.
 enum Stream : uint32_t { kStreamPhotons = 0xf0000000u, kStreamPass = 0xf1000000u };
+
+// Whether the film asks for any layer; paths keep account of them only then.
+inline bool keeps_layers(const opal_render_settings &settings) {
+  return (settings.passes >> OPAL_PASS_LAYER_BASE & ((1u << kLayers) - 1)) != 0;
+}
 
 struct PassContext {
   PassContext(const Scene &scene_, const opal_render_settings &settings_, const PixelFilter &filter_, int pass_)

@@ -50,6 +50,7 @@ class CameraPath {
                  uint32_t(pass.pass) * uint32_t(settings_.samples_per_pass) + sample),
         index_(PassContext::wavelength_index(sampler_.get1d(kDimWavelength))),
         w_(pass.wavelengths[index_]),
+        keeps_layers_(keeps_layers(settings_)),
         counts_(counts) {
     const Vec2 offset = pass.filter.sample(sampler_.get2d(kDimFilter));
     const float film_x = (float(x) + 0.5f + offset.x) / float(settings_.width);
@@ -64,6 +65,7 @@ class CameraPath {
     light_.wavelength_index = index_;
     light_.spectral = Spectrum(0.0f);
     while (alive_ && events_ < kMaxEvents) step();
+    if (keeps_layers_) finish_layers();
     return light_;
   }
 
@@ -191,6 +193,7 @@ class CameraPath {
       else go_straight_on();
       return;
     }
+    if (keeps_layers_) layers_ = layers_after_surface(sample.wi, sample.scattering);
     const EventClass event = classify(surface_, sample, w_, Transport::Radiance, sampler_.get1d(dimension + kDimSpare));
     const bool specular = (sample.scattering & kScatterSpecular) != 0;
     // The last bounce allowed still looks for lamps: that ray is next-event estimation's other half.
@@ -301,7 +304,10 @@ class CameraPath {
     Spectrum pdf = path_pdf_ * through.light_pdf * sample.pdf;
     if (!sample.dirac) pdf += path_pdf_ * value.pdf * through.path_pdf;
     contribution *= uplift(through.surfaces, w_) * through.medium / pdf.average();
+    const LayerTracker before = layers_;
+    if (keeps_layers_) layers_ = layers_after_surface(sample.wi, 0);
     add_scattered(contribution, value.sharp.sum() > value.rough.sum() && rough_events_ > 0);
+    layers_ = before;
   }
 
   // What of a light sample arrives; false: nothing.
@@ -342,6 +348,22 @@ class CameraPath {
     last_.pdf *= std::exp(-extinction[0] * t);
   }
 
+  // For as long as it lives, light that is added comes from an event in a medium.
+  class InMedium {
+   public:
+    InMedium(CameraPath &path, bool rainbow) : path_(path), layers_(path.layers_), first_(path.medium_first_) {
+      if (path.bounces_ == 0) path.medium_first_ = true;
+      path.layers_.meet_medium(rainbow);
+    }
+    ~InMedium() { path_.layers_ = layers_, path_.medium_first_ = first_; }
+    InMedium(const InMedium &) = delete;
+
+   private:
+    CameraPath &path_;
+    const LayerTracker layers_;
+    const bool first_;
+  };
+
   // Carries the ray through its media up to t_end. True: it was scattered or absorbed on the way.
   bool travel_in_medium(float t_end) {
     if (any_varies(scene_, media_)) return travel_in_varying_medium(t_end);
@@ -355,11 +377,17 @@ class CameraPath {
     const float t = sigma > 0 ? -std::log1p(-sampler_.get1d(dimension + kDimMedium)) / sigma : kInfinity;
     meet_lamps(std::min(t, t_end), here.extinction);
     if (!(t < t_end)) {
-      if (std::isfinite(t_end)) pass_unscattered(here.extinction, t_end);
-      else if (sigma > 0) alive_ = false;
+      if (std::isfinite(t_end)) {
+        pass_unscattered(here.extinction, t_end);
+        if (keeps_layers_) layers_.pass_media(transmittance_over(here.extinction, t_end));
+      } else if (sigma > 0) {
+        layers_.meet_medium(mostly_rainbow(here));
+        alive_ = false;
+      }
       return !alive_;
     }
     if (final_ray_ || !(here.scattering[0] > 0)) {
+      layers_.meet_medium(mostly_rainbow(here));
       alive_ = false;
       return true;
     }
@@ -384,6 +412,7 @@ class CameraPath {
       alive_ = false;
       return true;
     }
+    layers_.meet_medium(mostly_rainbow(here, -direction, -forward));
     last_ = {};
     last_.light_was_sampled = true;
     last_.event = EventClass::Rough;
@@ -415,15 +444,13 @@ class CameraPath {
 
     RayMedia media(scene_, media_, w_, ray_);
     RandomStream random(sampler_, dimension + kDimMedium);
+    MediumHere here;
     const auto glow = [&](const Spectrum &contribution, const Spectrum &pdf) {
-      const bool first = medium_first_;
-      if (bounces_ == 0) medium_first_ = true;
+      const InMedium scope(*this, mostly_rainbow(here));
       add(contribution / pdf.average(), false);
-      medium_first_ = first;
     };
     Walk walk{throughput_, path_pdf_, previous_pdf_};
     const auto take = [&] { throughput_ = walk.throughput, path_pdf_ = walk.path_pdf, previous_pdf_ = walk.light_pdf; };
-    MediumHere here;
     float t = kInfinity, depth = 0, after = ray_.t_min;
     bool collided = false;
     // Lamps that the ray meets end an interval, so that what they add has come just so far.
@@ -439,9 +466,12 @@ class CameraPath {
     if (!collided) {
       take();
       alive_ = throughput_.is_finite() && !throughput_.is_zero();
+      if (!alive_) layers_.meet_medium(mostly_rainbow(here));
+      else if (keeps_layers_ && bounces_ == 0) layers_.pass_media(marched_transmittance(t_end));
       return !alive_;
     }
     if (final_ray_ || here.scattering.is_zero()) {
+      layers_.meet_medium(mostly_rainbow(here));
       alive_ = false;
       return true;
     }
@@ -474,6 +504,7 @@ class CameraPath {
       alive_ = false;
       return true;
     }
+    layers_.meet_medium(mostly_rainbow(here, -direction, -forward));
     if (bounces_ == 0) medium_first_ = true;
     ++bounces_, ++events_, ++rough_events_;
     rough_in_medium_ = true;
@@ -494,6 +525,7 @@ class CameraPath {
     const Spectrum phase = here.phase_value(w_, dot(forward, sample.wi));
     const Spectrum share = last_.share(sample.dirac ? Spectrum(0.0f) : phase, sample.pdf);
     const Spectrum scattered = here.scattered(w_, -sample.wi, -forward, filter());
+    const InMedium scope(*this, mostly_rainbow(here, -sample.wi, -forward));
     add_connected(throughput_ * share * scattered * sample.radiance, sample, last_.p, path_pdf_,
                   sample.dirac ? Spectrum(0.0f) : phase, dimension + kDimLight);
   }
@@ -524,6 +556,7 @@ class CameraPath {
     Spectrum share = there.share(sample.dirac ? Spectrum(0.0f) : phase, sample.pdf);
     for (int i = 0; i < kWavelengths; ++i) share[i] = 1 - share[i];
     const Spectrum scattered = here.scattering * here.scattered(w_, -sample.wi, -ray_.direction, filter());
+    const InMedium scope(*this, mostly_rainbow(here, -sample.wi, -ray_.direction));
     add_connected(walk.throughput * scattered * share * sample.radiance / distance_pdf, sample, p, walk.light_pdf,
                   Spectrum(0.0f), dimension + kDimMediumLight);
   }
@@ -537,10 +570,7 @@ class CameraPath {
     if (!passes(p, sample, dimension, passed)) return;
     const Spectrum pdf = reached * (passed.light_pdf * sample.pdf + path * passed.path_pdf);
     light *= uplift(passed.surfaces, w_) * passed.medium / pdf.average();
-    const bool first = medium_first_;
-    if (bounces_ == 0) medium_first_ = true;
     add_scattered(light, false);
-    medium_first_ = first;
   }
 
   // Emission over the segment, in closed form: e (1 - exp(-sigma t)) / sigma.
@@ -551,10 +581,8 @@ class CameraPath {
       const float depth = sigma > 0 ? -std::expm1(-sigma * t_end) / sigma : t_end;
       if (std::isfinite(depth)) emitted[i] = here.emission[i] * depth;
     }
-    const bool first = medium_first_;
-    if (bounces_ == 0) medium_first_ = true;
+    const InMedium scope(*this, mostly_rainbow(here));
     add(throughput_ * emitted / path_pdf_.average(), false);
-    medium_first_ = first;
   }
 
   // Light that reaches the segment directly and is scattered once into it: the other half of hitting a source after a
@@ -582,10 +610,8 @@ class CameraPath {
     Spectrum pdf = path_pdf_ * passed.light_pdf * (distance_pdf * sample.pdf);
     if (!sample.dirac) pdf += path_pdf_ * here.extinction * through * phase * passed.path_pdf;
     contribution *= uplift(passed.surfaces, w_) * passed.medium / pdf.average();
-    const bool first = medium_first_;
-    if (bounces_ == 0) medium_first_ = true;
+    const InMedium scope(*this, mostly_rainbow(here, -sample.wi, -ray_.direction));
     add_scattered(contribution, false);
-    medium_first_ = first;
   }
 
   // ---- Photons ----
@@ -596,7 +622,10 @@ class CameraPath {
   void gather() {
     const Spectrum flux = gather_photons(pass_.photons, surface_, w_, index_, settings_.gather);
     if (flux.is_zero()) return;
+    const LayerTracker before = layers_;
+    layers_.meet_photons();
     add_bounced(throughput_ * flux / path_pdf_.average(), settings_.photons_carry == OPAL_CARRY_CAUSTICS);
+    layers_ = before;
   }
 
   // ---- Bookkeeping ----
@@ -620,7 +649,83 @@ class CameraPath {
      : events == 0 ? light_.emission
      : events == 1 ? light_.direct
                    : light_.indirect) += rgb;
+    if (keeps_layers_) add_to_layers(radiance, rgb);
     light_.spectral += radiance;
+  }
+
+  // ---- Layers for compositing ----
+
+  // The path's layers after light or path are scattered at the present surface into `wi`; `scattering` as sampled, 0 for a
+  // light sample.
+  LayerTracker layers_after_surface(const Vec3 &wi, uint32_t scattering) const {
+    LayerTracker after = layers_;
+    if (surface_.is_gem) {
+      after.meet_gem();
+      return after;
+    }
+    Spectrum share(1.0f);
+    if (layers_.needs_share()) {
+      if (scattering & kScatterSpecular) share = Spectrum(0.0f);
+      else if (!bsdf_is_only_diffuse(surface_.closures)) share = diffuse_share(wi);
+    }
+    after.meet_surface(share, (scattering & kScatterDiffuse) && (scattering & kScatterReflect));
+    return after;
+  }
+
+  Spectrum diffuse_share(const Vec3 &wi) const {
+    Spectrum unused;
+    const Spectrum all = bsdf_eval(surface_.closures, surface_.sp, wi, w_, Transport::Radiance, unused);
+    Spectrum share = bsdf_eval_diffuse_alone(surface_.closures, surface_.sp, wi, w_);
+    for (int i = 0; i < kWavelengths; ++i) share[i] = all[i] > 0 ? share[i] / all[i] : 0.0f;
+    return share;
+  }
+
+  // Of overlapping media the one that scatters most of this light takes it into its layer.
+  bool mostly_rainbow(const MediumHere &here, const Vec3 &light, const Vec3 &onward) const {
+    if (!keeps_layers_ || here.rainbow_part.is_zero()) return false;
+    if (here.n == 1) return true;
+    return here.rainbow_scattered(w_, light, onward).sum() >
+           0.5f * (here.scattering * here.phase_value(w_, dot(light, onward))).sum();
+  }
+
+  // The same without a direction: of what is taken or given off.
+  static bool mostly_rainbow(const MediumHere &here) {
+    return !here.rainbow_part.is_zero() && here.rainbow_part.sum() > 0.5f * here.scattering.sum();
+  }
+
+  // Transmittance of the media that vary between the ray's origin and t_end, by quadrature: it only weighs what is measured.
+  Spectrum marched_transmittance(float t_end) const {
+    constexpr int kSteps = 64;
+    const RayMedia media(scene_, media_, w_, ray_);
+    Spectrum depth(0.0f);
+    for (int i = 0; i < kSteps; ++i) depth += media.at((float(i) + 0.5f) * t_end / kSteps).extinction;
+    return transmittance_over(depth, t_end / kSteps);
+  }
+
+  void add_to_layers(const Spectrum &radiance, const Vec3 &rgb) {
+    LayerLight &out = light_.layers;
+    if (layers_.first() != Layer::Base) {
+      out[layers_.first()] += rgb;
+      return;
+    }
+    const Spectrum &share = layers_.base_share();
+    if (share.is_zero()) {
+      out[layers_.added()] += rgb;
+      return;
+    }
+    const Spectrum kept = radiance * share;
+    const Vec3 base = to_rgb(kept, w_);
+    out[Layer::Base] += base;
+    out[layers_.added()] += rgb - base;
+    Spectrum behind = kept;
+    for (int i = 0; i < kWavelengths; ++i) behind[i] /= std::max(layers_.camera_through()[i], 1e-6f);
+    out[Layer::Behind] += to_rgb(behind, w_);
+  }
+
+  void finish_layers() {
+    light_.layers.alpha[size_t(layers_.first())] += light_.alpha;
+    if (layers_.first() == Layer::Base)
+      light_.layers.alpha[size_t(Layer::Behind)] += light_.alpha / std::max(layers_.camera_through().average(), 1e-6f);
   }
 
   void note_guides() {
@@ -642,6 +747,7 @@ class CameraPath {
   const Sampler sampler_;
   const uint32_t index_;
   const Wavelengths &w_;
+  const bool keeps_layers_;
   RayCounts &counts_;
 
   Ray ray_;
@@ -652,6 +758,7 @@ class CameraPath {
   Surface surface_;
   LastEvent last_;
   PathLight light_;
+  LayerTracker layers_;
   Spectrum throughput_{1.0f}, path_pdf_{1.0f}, previous_pdf_{1.0f};
   float eta_scale_ = 1, travelled_ = 0;
   uint32_t events_ = 0;         // everything, free passes included: addresses the random numbers

@@ -15,6 +15,7 @@ struct PathLight {
   Vec3 caustics;  // a rough event lit through sharp ones
   Vec3 medium;    // whose first event, or whose source, is in a medium
   float alpha = 1;
+  LayerLight layers;  // the same light by layer, if the film keeps them
   // Guides, of the first event that is not straight through.
   Vec3 normal, position, albedo;
   float depth = 0;

@@ -116,6 +116,7 @@ bool Render::trace_camera_of(const PassContext &pass, PassBuffer &buffer, const 
   const auto render_pixel = [&](int x, int y, RayCounts &counts) {
     const size_t pixel = size_t(y) * size_t(w) + size_t(x);
     Vec3 emission, direct, indirect, caustics, medium, normal, position, albedo;
+    LayerLight layers;
     float alpha = 0, depth = 0;
     int hits = 0;
     for (int s = 0; s < samples; ++s) {
@@ -123,6 +124,7 @@ bool Render::trace_camera_of(const PassContext &pass, PassBuffer &buffer, const 
           trace_camera_path(pass, uint32_t(x + settings_.region[0]), uint32_t(y + settings_.region[1]), uint32_t(s), counts);
       emission += light.emission, direct += light.direct, indirect += light.indirect, caustics += light.caustics;
       medium += light.medium;
+      layers += light.layers;
       alpha += light.alpha;
       if (light.hit) normal += light.normal, position += light.position, albedo += light.albedo, ++hits;
       if (s == 0) depth = light.hit ? light.depth : 1e10f;
@@ -148,6 +150,16 @@ bool Render::trace_camera_of(const PassContext &pass, PassBuffer &buffer, const 
     if (buffer.has(OPAL_PASS_INDIRECT)) put(buffer.at(OPAL_PASS_INDIRECT, pixel), indirect);
     if (buffer.has(OPAL_PASS_CAUSTICS)) put(buffer.at(OPAL_PASS_CAUSTICS, pixel), caustics);
     if (buffer.has(OPAL_PASS_MEDIUM)) put(buffer.at(OPAL_PASS_MEDIUM, pixel), medium);
+    if (keeps_layers(settings_))
+      for (int i = 0; i < kLayers; ++i) {
+        const int p = OPAL_PASS_LAYER_BASE + i;
+        if (!buffer.has(p)) continue;
+        Vec3 rgb = layers.rgb[size_t(i)] * light_scale;
+        if (p == OPAL_PASS_LAYER_CAUSTICS && !splats.caustics.empty())
+          rgb += (splats.direct[pixel] + splats.indirect[pixel] + splats.caustics[pixel]) * exposure;
+        put(buffer.at(p, pixel), rgb);
+        buffer.at(p, pixel)[3] = layers.alpha[size_t(i)] * scale;
+      }
     if (buffer.has(OPAL_PASS_DEPTH)) *buffer.at(OPAL_PASS_DEPTH, pixel) = depth;
     if (buffer.has(OPAL_PASS_NORMAL)) put(buffer.at(OPAL_PASS_NORMAL, pixel), normal * scale);
     if (buffer.has(OPAL_PASS_POSITION)) put(buffer.at(OPAL_PASS_POSITION, pixel), hits ? position / float(hits) : Vec3{});
@@ -189,6 +201,16 @@ bool Render::render_pass(int number) {
 bool Render::read(int pass, float *out) const {
   const std::lock_guard lock(film_mutex_);
   return film_.read(pass, out);
+}
+
+bool Render::read_sums(int pass, double *out) const {
+  const std::lock_guard lock(film_mutex_);
+  return film_.read_sums(pass, out);
+}
+
+int Render::depth_pass() const {
+  const std::lock_guard lock(film_mutex_);
+  return film_.depth_pass();
 }
 
 float Render::noise() const {

@@ -23,6 +23,8 @@ class Render {
   void cancel() { cancelled_ = true; }
   float progress() const { return progress_.load(std::memory_order_relaxed); }
   bool read(int pass, float *out) const;
+  bool read_sums(int pass, double *out) const;
+  int depth_pass() const;
   float noise() const;
   opal_render_statistics statistics() const;
 

@@ -17,6 +17,8 @@ MediumHere medium_here(const Scene &scene, const MediumSet &set, const Wavelengt
     if (scattering.is_zero()) continue;
     here.scattering += scattering;
     here.part[here.n] = scattering;
+    here.rainbow[here.n] = medium.rainbow;
+    if (medium.rainbow) here.rainbow_part += scattering;
     here.phase[here.n++] = medium.phase >= 0 ? &scene.phases[size_t(medium.phase)] : &kIsotropic;
   }
   return here;
@@ -41,6 +43,13 @@ Spectrum MediumHere::scattered(const Wavelengths &w, const Vec3 &light, const Ve
   Spectrum sum(0.0f);
   for (int i = 0; i < n; ++i) sum += part[i] * phase[i]->scattered(w, light, onward, filter);
   for (int k = 0; k < kWavelengths; ++k) sum[k] = scattering[k] > 0 ? sum[k] / scattering[k] : 0.0f;
+  return sum;
+}
+
+Spectrum MediumHere::rainbow_scattered(const Wavelengths &w, const Vec3 &light, const Vec3 &onward) const {
+  Spectrum sum(0.0f);
+  for (int i = 0; i < n; ++i)
+    if (rainbow[i]) sum += part[i] * phase[i]->scattered(w, light, onward, nullptr);
   return sum;
 }
 

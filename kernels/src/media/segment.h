@@ -11,14 +11,18 @@ namespace opal {
 // What a ray is in at the path's wavelengths.
 struct MediumHere {
   Spectrum extinction{0.0f}, scattering{0.0f}, emission{0.0f};
+  Spectrum rainbow_part{0.0f};  // of the scattering, by media whose layer is rainbows
   int n = 0;
   const PhaseFunction *phase[MediumSet::kCapacity] = {};
   Spectrum part[MediumSet::kCapacity];  // of the scattering, by medium
+  bool rainbow[MediumSet::kCapacity] = {};
 
   // The phase functions' mixture, at every wavelength: what sample_phase samples.
   Spectrum phase_value(const Wavelengths &w, float cosine) const;
   // What is scattered of unpolarised light that goes along `light`, on along `onward`; `filter` may be null.
   Spectrum scattered(const Wavelengths &w, const Vec3 &light, const Vec3 &onward, const Polariser *filter) const;
+  // Scattering times phase function of the rainbows alone.
+  Spectrum rainbow_scattered(const Wavelengths &w, const Vec3 &light, const Vec3 &onward) const;
   // A direction to scatter into; density is phase_value at the hero.
   Vec3 sample_phase(const Wavelengths &w, const Vec3 &forward, float pick, Vec2 u, float &density) const;
   bool scatters() const { return scattering.max() > 0; }

@@ -74,6 +74,8 @@ MediumHere RayMedia::at(float t) const {
     if (scattering.is_zero()) continue;
     here.scattering += scattering;
     here.part[here.n] = scattering;
+    here.rainbow[here.n] = medium.rainbow;
+    if (medium.rainbow) here.rainbow_part += scattering;
     here.phase[here.n++] = layer.phase;
   }
   return here;
