@@ -79,7 +79,9 @@ class Rain:
             If the theory cannot hold the drops, in one sentence.
         """
         drops, phase = self.phase(rainbow)
-        return self._scene.add_medium(rainbow.extinction * drops.extinction_factor, 1.0, phase)
+        medium = self._scene.add_medium(rainbow.extinction * drops.extinction_factor, 1.0, phase)
+        self._scene.set_medium_layer(medium, rainbow=True)
+        return medium
 
     def phase(self, rainbow: Any) -> tuple[droplets.Drops, Any]:
         """The drops and their phase function; errors as `add`."""
