@@ -21,9 +21,9 @@ from .table_store import TableStore
 TABLE_VERSION = 3
 
 FIRST_NM, LAST_NM, STEP_NM = 380.0, 780.0, 10.0
-FLAT_STEP_NM = 20.0
+FLAT_STEP_NM, _FLAT_SIZES = 25.0, 15
 _COARSE, _FINE, _FINE_FROM = np.radians(0.25), np.radians(0.05), np.radians(60.0)
-_CLOCKS = 33
+_CLOCKS = 25
 _SINGLE_SIZE = 0.02  # a narrower spread leaves ripple that the angles of a table cannot follow
 
 Progress = Callable[[float], bool | None]
@@ -123,6 +123,7 @@ def _evaluate(drops: Drops, progress: Progress | None, **place: float) -> np.nda
         # Half a cell of the table, for ripple that lies between its angles; a thirtieth of what the sun's disc does to a variance.
         0.5 * _FINE if drops.theory == "MIE" and drops.spread < _SINGLE_SIZE else 0.0,
         distribution=drops.distribution,
+        sizes=_FLAT_SIZES if drops.flat else None,
         celsius=drops.celsius,
         salinity=drops.salinity,
         index=_indices(drops, wavelengths),
