@@ -8,12 +8,16 @@ from typing import Any
 
 import numpy as np
 from opal_kernels import droplets
-from opal_kernels.descriptions import Light, LightType
+from opal_kernels.descriptions import Density, Light, LightType
 from opal_kernels.optics.rainbow import sight
 from opal_kernels.scene import Scene
 
 from .. import rainbow_tables
 from ..report import Report
+
+
+# Height over which rain thins out where the world does not say: of the order of a shower cloud's base.
+RAIN_HEIGHT = 1000.0
 
 
 def drops_of(rainbow: Any, elevations: Sequence[float] = ()) -> droplets.Drops:
@@ -82,6 +86,25 @@ class Rain:
         medium = self._scene.add_medium(rainbow.extinction * drops.extinction_factor, 1.0, phase)
         self._scene.set_medium_layer(medium, rainbow=True)
         return medium
+
+    def add_world(self, world: Any) -> int:
+        """Fills the world with the rain of `OpalWorldProperties`; returns the medium's number. Errors as `add`."""
+        settings = world.opal
+        height = settings.scale_height
+        if not height > 0.0:
+            height = RAIN_HEIGHT
+            self._report.add(
+                world.name, f"Rain without a scale height would let no sun through: it is rendered with one of {RAIN_HEIGHT:g} m."
+            )
+        drops, phase = self.phase(settings.rainbow)
+        return self._scene.add_medium(
+            settings.rainbow.extinction * drops.extinction_factor,
+            1.0,
+            phase,
+            density=Density.HEIGHT,
+            scale_height=height,
+            base_height=settings.base_height,
+        )
 
     def phase(self, rainbow: Any) -> tuple[droplets.Drops, Any]:
         """The drops and their phase function; errors as `add`."""

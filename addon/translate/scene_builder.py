@@ -106,6 +106,7 @@ class SceneBuilder:
         self._context.note(problems)
         if world is not None:
             self.scene.set_world(world)
+        self._fill_world(override or depsgraph.scene_eval.world)
         for group in visible.groups:
             snapshot.materials.append([self._materials.number(m) for m in group.materials or (None,)])
 
@@ -115,6 +116,14 @@ class SceneBuilder:
             snapshot.mesh_of_group.append(self._read_mesh(group, needs, snapshot))
         snapshot.groups = visible.groups
         return snapshot
+
+    def _fill_world(self, world: Any) -> None:
+        if world is None or world.opal.kind != "RAINBOW":
+            return
+        try:
+            self.scene.set_world_medium(self.rain.add_world(world))
+        except ValueError as error:
+            self._report.add(world.name, f"{error} The world is rendered empty.")
 
     def _lamp_spectrum(self, values: np.ndarray) -> int:
         """The number of a lamp's spectrum; equal ones have the same, by which the kernels know how many there are."""

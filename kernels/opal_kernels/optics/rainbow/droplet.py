@@ -251,9 +251,11 @@ def fold_near(n: float, k: int, ratio: float, sun_elevation: float, clock: float
         return fold(n, k, ratio, sun_elevation, clock)
     t = n / _INDEX_STEP - step
     shifts = [one.angle - float(geometric.fold(geometric.caustic_deviation(node, k))) for one, node in zip(pair, nodes, strict=True)]
-    low, high = (max(one.single_delta[0] for one in pair), min(one.single_delta[-1] for one in pair)) if all(
-        one.single_delta.size for one in pair
-    ) else (0.0, 0.0)
+    low, high = (
+        (max(one.single_delta[0] for one in pair), min(one.single_delta[-1] for one in pair))
+        if all(one.single_delta.size for one in pair)
+        else (0.0, 0.0)
+    )
     alone = np.linspace(low, max(high, low), _SINGLES)
 
     def mixed(name: str) -> np.ndarray:
