@@ -336,6 +336,7 @@ OPAL_EXPORT int32_t opal_scene_intersect(const opal_scene *scene, int64_t n, con
 /* ---- Rendering ---- */
 
 enum { OPAL_CARRY_CAUSTICS = 0, OPAL_CARRY_INDIRECT = 1, OPAL_CARRY_ALL = 2, OPAL_CARRY_NONE = 3 };
+enum { OPAL_VOLUME_POINTS = 0, OPAL_VOLUME_BEAM_RADIANCE = 1, OPAL_VOLUME_BEAMS = 2 };
 enum { OPAL_FILTER_BOX = 0, OPAL_FILTER_GAUSSIAN = 1, OPAL_FILTER_BLACKMAN_HARRIS = 2 };
 
 typedef struct opal_render_settings {
@@ -357,9 +358,14 @@ typedef struct opal_render_settings {
   int32_t transparent_film;
   float clamp_direct, clamp_indirect; /* 0: none (default) */
   int32_t motion_blur;
-  int32_t spectral_bins; /* 0: none; else bins of the spectral film between the wavelengths */
-  int32_t threads;       /* 0: as the scene */
-  uint32_t passes;       /* bit 1 << OPAL_PASS_*: what the film keeps; Combined always */
+  int32_t spectral_bins;   /* 0: none; else bins of the spectral film between the wavelengths */
+  int32_t threads;         /* 0: as the scene */
+  uint32_t passes;         /* bit 1 << OPAL_PASS_*: what the film keeps; Combined always */
+  int32_t volume_estimate; /* OPAL_VOLUME_*: how photons in media are looked up */
+  int32_t volume_photons;  /* emitted a pass for media alone; 0: the photons of photons_per_pass serve both */
+  float volume_radius;   /* of the first pass's kernel in media, metres; 0: radius, and if that is 0 chosen from the photons */
+  int32_t march_steps;   /* POINTS: steps along a ray */
+  float march_tolerance; /* POINTS: relative difference of neighbours above which a step is halved; 0: never */
 } opal_render_settings;
 
 OPAL_EXPORT opal_render *opal_render_create(opal_scene *scene, const opal_render_settings *settings);
@@ -410,6 +416,13 @@ typedef struct opal_render_statistics {
   int64_t camera_rays, path_rays, shadow_rays, photons_emitted, photons_stored, splats;
   double camera_seconds, photon_seconds, build_seconds;
   int64_t memory_bytes;
+  int64_t volume_photons_emitted, volume_photons_stored; /* points or beams in media */
+  double search_seconds;                                 /* part of photon_seconds: building what photons are looked up in */
+  int64_t photon_bytes;                                  /* of the last pass's photons and what finds them */
+  /* Where the photons' energy went, in W at the photons' first wavelength, passes added up: emitted = stored + absorbed +
+   * escaped. Stored: where a photon was left and went no further; absorbed: by surfaces and media, with what Russian
+   * roulette added and took. */
+  double energy_emitted, energy_stored, energy_absorbed, energy_escaped;
 } opal_render_statistics;
 OPAL_EXPORT int32_t opal_render_get_statistics(const opal_render *render, opal_render_statistics *out);
 

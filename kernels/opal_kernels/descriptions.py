@@ -118,6 +118,14 @@ class Carry(IntEnum):
     NONE = 3
 
 
+class VolumeEstimate(IntEnum):
+    """How photons in media are looked up: three methods, one picture in the limit."""
+
+    POINTS = 0
+    BEAM_RADIANCE = 1
+    BEAMS = 2
+
+
 class Filter(IntEnum):
     """Pixel filters."""
 
@@ -409,6 +417,16 @@ class RenderSettings:
         Of the first pass's photon kernel in metres; 0 lets the scene choose.
     passes : iterable of Pass
         What the film keeps beside Combined.
+    volume_estimate : VolumeEstimate
+        How photons in media are looked up.
+    volume_photons : int
+        Photons emitted a pass for media alone; 0 lets ``photons_per_pass`` serve surfaces and media together.
+    volume_radius : float
+        Of the first pass's kernel in media in metres; 0 takes ``radius``, and if that is 0 too, lets the photons choose.
+    march_steps : int
+        Steps along a ray of the estimate ``POINTS``.
+    march_tolerance : float
+        Relative difference between neighbouring steps above which one is halved; 0 halves none.
     """
 
     width: int = 256
@@ -435,3 +453,8 @@ class RenderSettings:
     spectral_bins: int = 0
     threads: int = 0
     passes: Sequence[int] = field(default_factory=tuple)
+    volume_estimate: int = VolumeEstimate.BEAMS
+    volume_photons: int = 0
+    volume_radius: float = 0.0
+    march_steps: int = 16
+    march_tolerance: float = 0.5

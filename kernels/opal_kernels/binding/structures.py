@@ -237,6 +237,11 @@ class RenderSettingsStruct(ctypes.Structure):
         ("spectral_bins", c_int32),
         ("threads", c_int32),
         ("passes", c_uint32),
+        ("volume_estimate", c_int32),
+        ("volume_photons", c_int32),
+        ("volume_radius", c_float),
+        ("march_steps", c_int32),
+        ("march_tolerance", c_float),
     ]
 
 
@@ -252,6 +257,14 @@ class RenderStatisticsStruct(ctypes.Structure):
         ("photon_seconds", c_double),
         ("build_seconds", c_double),
         ("memory_bytes", c_int64),
+        ("volume_photons_emitted", c_int64),
+        ("volume_photons_stored", c_int64),
+        ("search_seconds", c_double),
+        ("photon_bytes", c_int64),
+        ("energy_emitted", c_double),
+        ("energy_stored", c_double),
+        ("energy_absorbed", c_double),
+        ("energy_escaped", c_double),
     ]
 
 

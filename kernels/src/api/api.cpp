@@ -604,6 +604,10 @@ opal_render *opal_render_create(opal_scene *scene, const opal_render_settings *s
     require(s.samples_per_pass > 0, "A pass needs at least one sample");
     require(s.photons_per_pass >= 0 && s.photons_carry >= 0 && s.photons_carry <= OPAL_CARRY_NONE,
             "The photon settings are out of range");
+    require(s.volume_estimate >= OPAL_VOLUME_POINTS && s.volume_estimate <= OPAL_VOLUME_BEAMS && s.volume_photons >= 0 &&
+                std::isfinite(s.volume_radius) && s.volume_radius >= 0 && s.march_steps >= 1 && s.march_steps <= 256 &&
+                s.march_tolerance >= 0,
+            "The settings of photons in media are out of range");
     require(s.wavelength_first >= 360 && s.wavelength_last <= 830 && s.wavelength_last - s.wavelength_first >= 1,
             "The wavelengths must lie between 360 and 830 nm, at least 1 nm apart");
     require(s.spectral_bins >= 0 && s.spectral_bins <= 1000, "Between 0 and 1000 spectral bins are possible");

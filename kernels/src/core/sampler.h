@@ -92,6 +92,7 @@ enum BounceDimension : uint32_t {
   kDimMediumLight = 14,     // 2
   kDimMediumPick = 16,      // 1
   kDimSpare = 17,
+  kDimMarch = 18,  // 1
 };
 constexpr uint32_t bounce_dimension(uint32_t bounce, uint32_t which) { return kDimBounce + bounce * kDimsPerBounce + which; }
 

@@ -8,6 +8,7 @@
 #include "integrator/layers.h"
 #include "media/segment.h"
 #include "photons/photon_map.h"
+#include "photons/volume_map.h"
 #include "scene/scene.h"
 
 #include <array>
@@ -21,7 +22,7 @@ inline constexpr int kWavelengthSets = kPassWavelengths / kWavelengths;
 static_assert(kWavelengthSets * kWavelengths == kPassWavelengths);
 
 // Streams of the sampler: pixels count from 0, photons and passes sit above every pixel.
-enum Stream : uint32_t { kStreamPhotons = 0xf0000000u, kStreamPass = 0xf1000000u };
+enum Stream : uint32_t { kStreamPhotons = 0xf0000000u, kStreamPass = 0xf1000000u, kStreamVolumePhotons = 0xf2000000u };
 
 // Whether the film asks for any layer; paths keep account of them only then.
 inline bool keeps_layers(const opal_render_settings &settings) {
@@ -50,7 +51,8 @@ struct PassContext {
   const PixelFilter &filter;
   const int pass;
   std::array<Wavelengths, kPassWavelengths> wavelengths;
-  PhotonMap photons;
+  PhotonMap photons;       // on surfaces
+  VolumeMap volume;        // in media
   MediumSet camera_media;  // what the camera is in
   Polariser polariser;     // before its lens
 };

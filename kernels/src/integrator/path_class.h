@@ -6,7 +6,8 @@
 //   direct    when the first event is rough:            L R ...
 //   caustic   when sharp events come before a rough one: L S+ R ...
 //   indirect  for what reaches a rough event after another rough one.
-// A photon may be left at a rough event; the classes say whether it is, and the camera's paths leave out what it brings.
+// Scattering in a medium is a rough event like any other: light that a gem throws into fog is a caustic there. A photon may
+// be left at a rough event; the classes say whether it is, and the camera's paths leave out what it brings.
 #pragma once
 
 #include "bsdf/closure.h"
@@ -54,11 +55,16 @@ inline bool photon_goes_on(int carry) { return carry == OPAL_CARRY_INDIRECT || c
 // lies between there and the camera. True: photons bring it, the path must not.
 inline bool brought_by_photons(const Scene &scene, int carry, EventClass event, bool after_rough, const SourceId &source) {
   if (!source_emits_photons(scene, carry, source)) return false;
-  if (event == EventClass::Rough) return carry == OPAL_CARRY_ALL;
+  if (event == EventClass::Rough) return carry == OPAL_CARRY_ALL || (carry == OPAL_CARRY_INDIRECT && after_rough);
   return after_rough;
 }
 
-// Whether camera paths go on after a rough event, or photons bring everything that would be found.
-inline bool camera_goes_on_after_rough(int carry) { return carry == OPAL_CARRY_CAUSTICS || carry == OPAL_CARRY_NONE; }
+// Whether camera paths go on after a rough event, or photons bring everything that would be found. Nothing emits the light
+// of glowing media as photons: where there are such, paths go on for that light alone.
+inline bool camera_goes_on_after_rough(const Scene &scene, int carry) {
+  return carry == OPAL_CARRY_CAUSTICS || carry == OPAL_CARRY_NONE || scene.any_glowing_medium;
+}
+// Whether photons are looked up after this many rough events: those that bring all indirect light serve the first alone.
+inline bool gathers_after_rough(int carry, uint32_t rough_events) { return carry == OPAL_CARRY_CAUSTICS || rough_events == 0; }
 
 }  // namespace opal

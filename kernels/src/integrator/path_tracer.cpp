@@ -9,6 +9,7 @@
 
 #include "integrator/surface.h"
 #include "photons/gather.h"
+#include "photons/volume_estimate.h"
 
 namespace opal {
 namespace {
@@ -148,11 +149,7 @@ class CameraPath {
   void add_met(const SourceId &source, const Spectrum &radiance, const Vec3 &point, const Vec3 &normal, float distance) {
     if (radiance.is_zero()) return;
     if (bounces_ > 0 && !lights_receiver(scene_, source, last_.light_group)) return;
-    if (last_.event == EventClass::Sharp && rough_in_medium_) {
-      // Photons are left on surfaces: what a medium scatters is the path's to find.
-    } else if (bounces_ > 0 && brought(source)) {
-      return;
-    }
+    if (bounces_ > 0 && brought(source)) return;
     Spectrum pdf = path_pdf_, share(1.0f);
     if (last_.light_was_sampled && source.kind != SourceKind::None) {
       const float p = light_pdf(scene_, source, last_.p, last_.normal, last_.transmissive, last_.light_group, ray_.direction,
@@ -198,7 +195,7 @@ class CameraPath {
     const bool specular = (sample.scattering & kScatterSpecular) != 0;
     // The last bounce allowed still looks for lamps: that ray is next-event estimation's other half.
     if (!specular && !may_go_on) final_ray_ = true;
-    if (event == EventClass::Rough && !camera_goes_on_after_rough(settings_.photons_carry)) {
+    if (event == EventClass::Rough && !camera_goes_on_after_rough(scene_, settings_.photons_carry)) {
       // Photons bring the rest, but for direct light, of which this ray is next-event estimation's other half.
       if (settings_.photons_carry != OPAL_CARRY_INDIRECT) {
         alive_ = false;
@@ -277,7 +274,7 @@ class CameraPath {
   }
 
   void sample_direct(uint32_t dimension) {
-    const bool rough_counts = settings_.photons_carry != OPAL_CARRY_ALL;
+    const bool rough_counts = settings_.photons_carry != OPAL_CARRY_ALL || scene_.any_glowing_medium;
     if (!rough_counts && !surface_.caster) return;
     const ShadingPoint &sp = surface_.sp;
     const int32_t group = scene_.groups[sp.instance->group].light_group;
@@ -289,8 +286,8 @@ class CameraPath {
     const SplitValue value = evaluate(surface_, sample.wi, w_, Transport::Radiance);
     const bool keep_rough =
         !brought_by_photons(scene_, settings_.photons_carry, EventClass::Rough, rough_events_ > 0, sample.source);
-    const bool keep_sharp = rough_in_medium_ || !brought_by_photons(scene_, settings_.photons_carry, EventClass::Sharp,
-                                                                    rough_events_ > 0, sample.source);
+    const bool keep_sharp =
+        !brought_by_photons(scene_, settings_.photons_carry, EventClass::Sharp, rough_events_ > 0, sample.source);
     // Lamps hidden from a kind of ray do not light the lobes that send such rays.
     const bool behind = dot(sample.wi, sp.ng) < 0;
     Spectrum f(0.0f);
@@ -371,7 +368,10 @@ class CameraPath {
     const uint32_t dimension = bounce_dimension(events_, 0);
     const bool may_go_on = may_scatter_again();
     if (!here.emission.is_zero()) add_emitted(here, t_end);
-    if (here.scatters() && !final_ray_) gather_along(here, t_end, dimension);
+    if (here.scatters() && !final_ray_) {
+      gather_along(here, t_end, dimension);
+      gather_volume(CameraWay(here), t_end, mostly_rainbow(here), dimension);
+    }
 
     const float sigma = here.extinction[0];
     const float t = sigma > 0 ? -std::log1p(-sampler_.get1d(dimension + kDimMedium)) / sigma : kInfinity;
@@ -391,7 +391,7 @@ class CameraPath {
       alive_ = false;
       return true;
     }
-    final_ray_ = !may_go_on;
+    if (!may_scatter(may_go_on)) return true;
 
     const GatherDistance gathered(scene_, ray_, t_end, here.extinction.average());
     const Spectrum through = transmittance_over(here.extinction, t);
@@ -432,6 +432,20 @@ class CameraPath {
   // Media scatter as often as it takes, milk thousands of times: roulette ends such paths, not the depth, unless that is 0.
   bool may_scatter_again() const { return settings_.max_depth > 0; }
 
+  // Before a scattering in a medium: false where photons bring everything beyond it, and then the path has ended.
+  bool may_scatter(bool may_go_on) {
+    const bool goes_on = camera_goes_on_after_rough(scene_, settings_.photons_carry);
+    final_ray_ = !may_go_on || !goes_on;
+    // Direct light is the path's own with INDIRECT: the scattered ray is next-event estimation's other half.
+    if (!goes_on && settings_.photons_carry != OPAL_CARRY_INDIRECT) alive_ = false;
+    return alive_;
+  }
+
+  // Whether photons bring what this source scatters directly into the ray.
+  bool brought_to_medium(const SourceId &source) const {
+    return brought_by_photons(scene_, settings_.photons_carry, EventClass::Rough, rough_events_ > 0, source);
+  }
+
   // The camera's filter where the camera sees a scattering at first hand. What lights it is taken as unpolarised.
   const Polariser *filter() const { return bounces_ == 0 ? &pass_.polariser : nullptr; }
 
@@ -441,6 +455,7 @@ class CameraPath {
     const bool may_go_on = may_scatter_again();
     const GatherDistance lamps = GatherDistance::equiangular(scene_, ray_, t_end);
     if (!final_ray_ && !lamps.empty()) connect_at_equiangular(lamps, t_end, dimension);
+    if (!final_ray_) gather_in_varying(t_end, dimension);
 
     RayMedia media(scene_, media_, w_, ray_);
     RandomStream random(sampler_, dimension + kDimMedium);
@@ -475,7 +490,7 @@ class CameraPath {
       alive_ = false;
       return true;
     }
-    final_ray_ = !may_go_on;
+    if (!may_scatter(may_go_on)) return true;
 
     throughput_ = walk.throughput * here.scattering, path_pdf_ = walk.path_pdf;
     const Vec3 forward = ray_.direction;
@@ -520,7 +535,7 @@ class CameraPath {
     LightSample sample;
     if (!sample_light(scene_, last_.p, {}, true, -1, sampler_.get1d(dimension + kDimLightPick),
                       sampler_.get2d(dimension + kDimLight), w_, ray_.time, sample) ||
-        !(sample.pdf > 0) || !(sample.visibility & OPAL_RAY_SCATTER))
+        !(sample.pdf > 0) || !(sample.visibility & OPAL_RAY_SCATTER) || brought_to_medium(sample.source))
       return;
     const Spectrum phase = here.phase_value(w_, dot(forward, sample.wi));
     const Spectrum share = last_.share(sample.dirac ? Spectrum(0.0f) : phase, sample.pdf);
@@ -543,7 +558,7 @@ class CameraPath {
     LightSample sample;
     if (!sample_light(scene_, p, {}, true, -1, sampler_.get1d(dimension + kDimMediumPick),
                       sampler_.get2d(dimension + kDimMediumLight), w_, ray_.time, sample) ||
-        !(sample.pdf > 0) || !(sample.visibility & OPAL_RAY_SCATTER))
+        !(sample.pdf > 0) || !(sample.visibility & OPAL_RAY_SCATTER) || brought_to_medium(sample.source))
       return;
     RandomStream random(sampler_, dimension + kDimMediumDistance);
     Walk walk{throughput_, path_pdf_, path_pdf_};
@@ -600,6 +615,7 @@ class CameraPath {
         !(sample.pdf > 0))
       return;
     if (!(sample.visibility & OPAL_RAY_SCATTER)) return;
+    if (brought_to_medium(sample.source)) return;
     const Spectrum phase = here.phase_value(w_, dot(ray_.direction, sample.wi));
     const Spectrum through = transmittance_over(here.extinction, t);
     Spectrum contribution =
@@ -617,7 +633,9 @@ class CameraPath {
   // ---- Photons ----
 
   // Seen at first hand, photons are splatted from their own side; everything else is looked up.
-  bool gathers() const { return bounces_ > 0 && !pass_.photons.empty(); }
+  bool gathers() const {
+    return bounces_ > 0 && !pass_.photons.empty() && gathers_after_rough(settings_.photons_carry, rough_events_);
+  }
 
   void gather() {
     const Spectrum flux = gather_photons(pass_.photons, surface_, w_, index_, settings_.gather);
@@ -626,6 +644,24 @@ class CameraPath {
     layers_.meet_photons();
     add_bounced(throughput_ * flux / path_pdf_.average(), settings_.photons_carry == OPAL_CARRY_CAUSTICS);
     layers_ = before;
+  }
+
+  // What photons scatter into the ray on its way through media, seen at first hand too.
+  void gather_volume(const CameraWay &way, float t_end, bool rainbow, uint32_t dimension) {
+    if (pass_.volume.empty() || !gathers_after_rough(settings_.photons_carry, rough_events_)) return;
+    const Spectrum radiance = volume_radiance(pass_, {ray_.origin, ray_.direction, t_end, way, media_key(media_), filter(), w_,
+                                                      index_, sampler_.get1d(dimension + kDimMarch)});
+    if (radiance.is_zero()) return;
+    const InMedium scattered(*this, rainbow);
+    add_bounced(throughput_ * radiance / path_pdf_.average(), settings_.photons_carry == OPAL_CARRY_CAUSTICS);
+  }
+
+  void gather_in_varying(float t_end, uint32_t dimension) {
+    float t_begin = 0;
+    if (pass_.volume.empty() || !gathers_after_rough(settings_.photons_carry, rough_events_)) return;
+    if (!pass_.volume.clip(ray_.origin, ray_.direction, PassContext::set_of(index_), t_begin, t_end)) return;
+    const CameraWay way(scene_, media_, w_, ray_, t_end, RandomStream(sampler_, dimension + kDimMarch));
+    gather_volume(way, t_end, mostly_rainbow(way.at(0.5f * (t_begin + t_end))), dimension);
   }
 
   // ---- Bookkeeping ----

@@ -4,8 +4,8 @@
 #include "core/parallel.h"
 #include "film/spectral_film.h"
 #include "integrator/path_tracer.h"
-#include "photons/photon_tracer.h"
 #include "integrator/path_class.h"
+#include "photons/kernel_radius.h"
 
 #include <chrono>
 
@@ -28,6 +28,7 @@ Render::Render(const Scene &scene, const opal_render_settings &settings)
       settings_(settings),
       filter_(settings.filter, settings.filter_width),
       threads_(resolve_threads(settings.threads > 0 ? settings.threads : scene.threads)) {
+  if (settings_.photons_per_pass <= 0) settings_.photons_carry = OPAL_CARRY_NONE;  // all light is left to camera paths
   film_.allocate(width(), height(), settings.passes, settings.spectral_bins);
   statistics_.build_seconds = scene.build_seconds;
 }
@@ -37,50 +38,34 @@ bool Render::wants_photons() const {
   return settings_.photons_carry != OPAL_CARRY_CAUSTICS || !scene_.casters.empty();
 }
 
-float Render::radius_of(int pass) const {
-  double radius = settings_.radius;
-  if (!(radius > 0)) {
-    // Four pixels' footprint where the nearest caster stands.
-    const opal_camera_desc &camera = scene_.camera;
-    const float pixel = (camera.window[1] - camera.window[0]) / float(settings_.width);
-    float distance = 1;
-    if (camera.type == OPAL_CAMERA_PERSPECTIVE) {
-      const Vec3 eye = camera_transform(camera, 0).origin();
-      distance = kInfinity;
-      for (const EmissionTarget &target : scene_.casters)
-        distance = std::min(distance, std::max(length(target.centre - eye), target.radius));
-      if (!std::isfinite(distance)) distance = std::max(length(scene_.bounds.centre() - eye), scene_.bounds.radius());
+bool Render::run_task(const PassContext &pass, const PhotonTask &task, float from, float to, std::vector<PhotonChunk> &chunks) {
+  const size_t before = chunks.size();
+  const int64_t n_chunks = (int64_t(task.count) + kPhotonChunk - 1) / kPhotonChunk;
+  chunks.resize(before + size_t(n_chunks));
+  std::atomic<int64_t> done{0};
+  const bool complete = parallel_for(n_chunks, threads_, cancelled_, [&](int64_t i) {
+    const uint32_t first = uint32_t(i) * kPhotonChunk;
+    for (uint32_t k = first; k < std::min(task.count, first + kPhotonChunk); k += 256) {  // short, so that cancelling is prompt
+      if (cancelled_.load(std::memory_order_relaxed)) return;
+      trace_photons(pass, task, k, std::min({task.count, first + kPhotonChunk, k + 256}), chunks[before + size_t(i)]);
     }
-    radius = 4.0 * double(pixel) * double(distance);
-  }
-  // Knaus & Zwicker 2011, equation 20: the disc shrinks by (i + alpha) / (i + 1) from pass i to the next.
-  const double alpha = clamp(settings_.radius_shrink, 0.01f, 1.0f);
-  double area = radius * radius;
-  for (int i = 1; i <= pass; ++i) area *= (i + alpha) / (i + 1.0);
-  return float(std::sqrt(area));
+    progress_ = lerp(from, to, float(++done) / float(n_chunks));
+  });
+  return complete && !cancelled_;
 }
 
 bool Render::trace_photons_of(PassContext &pass, PassBuffer &buffer, SplatSums &splats) {
   const auto start = std::chrono::steady_clock::now();
   const uint32_t n = uint32_t(settings_.photons_per_pass);
-  const int64_t n_chunks = (int64_t(n) + kPhotonChunk - 1) / kPhotonChunk;
-  std::vector<PhotonChunk> chunks{size_t(n_chunks)};
-  std::atomic<int64_t> done{0};
-  const bool complete = parallel_for(n_chunks, threads_, cancelled_, [&](int64_t i) {
-    const uint32_t first = uint32_t(i) * kPhotonChunk;
-    for (uint32_t k = first; k < std::min(n, first + kPhotonChunk); k += 256) {  // short steps, so that cancelling is prompt
-      if (cancelled_.load(std::memory_order_relaxed)) return;
-      trace_photons(pass, k, std::min({n, first + kPhotonChunk, k + 256}), chunks[size_t(i)]);
-    }
-    progress_ = 0.3f * float(++done) / float(n_chunks);
-  });
-  if (!complete || cancelled_) return false;
+  const uint32_t apart = scene_.any_medium ? uint32_t(settings_.volume_photons) : 0;
+  std::vector<PhotonChunk> chunks;
+  if (!run_task(pass, {n, kStreamPhotons, true, apart == 0}, 0, apart ? 0.15f : 0.3f, chunks)) return false;
+  if (apart && !run_task(pass, {apart, kStreamVolumePhotons, false, true}, 0.15f, 0.3f, chunks)) return false;
 
   size_t total = 0;
   for (const PhotonChunk &chunk : chunks) total += chunk.photons.size();
   std::vector<Photon> photons;
   photons.reserve(total);
-  int64_t rays = 0;
   splats.direct.resize(size_t(width()) * size_t(height()));
   splats.indirect = splats.caustics = splats.direct;
   for (PhotonChunk &chunk : chunks) {  // in order: the sums do not depend on who traced what
@@ -91,16 +76,59 @@ bool Render::trace_photons_of(PassContext &pass, PassBuffer &buffer, SplatSums &
                                         : splats.indirect)[splat.pixel] += splat.rgb;
     for (const auto &[slot, value] : chunk.spectral)
       if (buffer.has(OPAL_PASS_SPECTRAL)) buffer.values[OPAL_PASS_SPECTRAL][slot] += value;
-    rays += chunk.rays;
+    statistics_.path_rays += chunk.rays;
     statistics_.splats += int64_t(chunk.splats.size());
-    chunk = {};
+    statistics_.energy_emitted += chunk.energy.emitted;
+    statistics_.energy_stored += chunk.energy.stored;
+    statistics_.energy_absorbed += chunk.energy.absorbed;
+    statistics_.energy_escaped += chunk.energy.escaped;
+    chunk.photons = {}, chunk.splats = {}, chunk.spectral = {};
   }
+  const auto traced = std::chrono::steady_clock::now();
   statistics_.photons_emitted += n;
   statistics_.photons_stored += int64_t(total);
-  statistics_.path_rays += rays;
-  pass.photons.build(std::move(photons), radius_of(pass.pass), threads_);
+  statistics_.volume_photons_emitted += scene_.any_medium ? (apart ? apart : n) : 0;
+  pass.photons.build(std::move(photons), surface_radius(scene_, settings_, pass.pass), threads_);
+  build_volume(pass, chunks);
+  statistics_.photon_bytes = int64_t(pass.photons.size() * sizeof(Photon)) + pass.volume.memory_bytes();
+  statistics_.search_seconds += seconds_since(traced);
   statistics_.photon_seconds += seconds_since(start);
   return true;
+}
+
+// Points or beams of the pass, whichever its estimate looks up.
+void Render::build_volume(PassContext &pass, std::vector<PhotonChunk> &chunks) {
+  const auto gathered = [&]<class T>(std::vector<T> PhotonChunk::*part) {
+    size_t total = 0;
+    for (const PhotonChunk &chunk : chunks) total += (chunk.*part).size();
+    std::vector<T> all;
+    all.reserve(total);
+    for (PhotonChunk &chunk : chunks) {
+      all.insert(all.end(), (chunk.*part).begin(), (chunk.*part).end());
+      chunk.*part = {};
+    }
+    statistics_.volume_photons_stored += int64_t(total);
+    return all;
+  };
+  const float radius = settings_.volume_radius > 0 ? settings_.volume_radius : settings_.radius;
+  switch (settings_.volume_estimate) {
+    case OPAL_VOLUME_BEAMS: {
+      const float first = radius > 0 ? radius : pixel_footprint(scene_, settings_);
+      const float shrunk = radius_factor(1, settings_.radius_shrink, pass.pass);
+      pass.volume.build(gathered(&PhotonChunk::beams), first * shrunk, threads_);
+      break;
+    }
+    case OPAL_VOLUME_BEAM_RADIANCE: {
+      // The ray passes many discs where a sphere holds the photons asked for: an eighth of them sets the radius.
+      const float shrunk = radius_factor(2, settings_.radius_shrink, pass.pass);
+      pass.volume.build(gathered(&PhotonChunk::volume), radius * shrunk, shrunk, std::max(1, settings_.gather / 8), threads_);
+      break;
+    }
+    default: {
+      const float shrunk = radius_factor(3, settings_.radius_shrink, pass.pass);
+      pass.volume.build(gathered(&PhotonChunk::volume), radius * shrunk, shrunk, settings_.gather, threads_);
+    }
+  }
 }
 
 bool Render::trace_camera_of(const PassContext &pass, PassBuffer &buffer, const SplatSums &splats) {

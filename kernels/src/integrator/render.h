@@ -3,6 +3,7 @@
 #pragma once
 
 #include "integrator/pass.h"
+#include "photons/photon_tracer.h"
 
 #include <atomic>
 #include <mutex>
@@ -30,14 +31,15 @@ class Render {
 
  private:
   bool trace_photons_of(PassContext &pass, PassBuffer &buffer, SplatSums &splats);
+  bool run_task(const PassContext &pass, const PhotonTask &task, float from, float to, std::vector<PhotonChunk> &chunks);
+  void build_volume(PassContext &pass, std::vector<PhotonChunk> &chunks);
   bool trace_camera_of(const PassContext &pass, PassBuffer &buffer, const SplatSums &splats);
-  float radius_of(int pass) const;
   bool wants_photons() const;
   int width() const { return settings_.region[2] - settings_.region[0]; }
   int height() const { return settings_.region[3] - settings_.region[1]; }
 
   const Scene &scene_;
-  const opal_render_settings settings_;
+  opal_render_settings settings_;
   const PixelFilter filter_;
   const int threads_;
   mutable std::mutex film_mutex_;

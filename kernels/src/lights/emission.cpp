@@ -208,6 +208,15 @@ bool emission_reaches(const EmissionSample &sample, const Vec3 &p) {
   return miss2 * (d2 + r2) <= r2 * d2;
 }
 
+float emission_reaches_from(const EmissionSample &sample) {
+  if (!(sample.soft_radius > 0)) return 0;
+  const Vec3 to_centre = sample.centre - sample.ray.origin;
+  const float foot = dot(to_centre, sample.ray.direction), r2 = sqr(sample.soft_radius);
+  const float miss2 = length_squared(to_centre - sample.ray.direction * foot);
+  if (!(miss2 < r2)) return kInfinity;
+  return std::max(0.0f, foot + safe_sqrt(miss2 * r2 / (r2 - miss2) - miss2));
+}
+
 bool sample_emission(const Scene &scene, const std::vector<EmissionTarget> &targets, Vec2 pick, Vec2 position, Vec2 direction,
                      float time, const Wavelengths &w, EmissionSample &out) {
   if (!scene.lights) return false;

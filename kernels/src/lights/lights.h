@@ -82,6 +82,8 @@ struct EmissionSample {
 // lights, which is less than the sphere that photons leave: those that p's disc could not have sent are dropped, so
 // that photons and next-event estimation bring the same light. Always true for other sources.
 bool emission_reaches(const EmissionSample &sample, const Vec3 &p);
+// The distance along the emitted ray from which on emission_reaches() holds; infinite: nowhere.
+float emission_reaches_from(const EmissionSample &sample);
 // Emits one photon. With targets, only directions that can meet one of them are sampled (probability counted exactly,
 // overlaps included); without, the whole emission into the scene's bounding sphere. A photon for which false is returned
 // carries nothing; it counts among the M all the same. Fastest with Scene::casters itself or an empty vector.

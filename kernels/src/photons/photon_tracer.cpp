@@ -3,6 +3,7 @@
 
 #include "film/spectral_film.h"
 #include "integrator/surface.h"
+#include "photons/transmittance_steps.h"
 
 namespace opal {
 namespace {
@@ -12,22 +13,40 @@ constexpr int kRouletteStart = 6;
 
 class PhotonPath {
  public:
-  PhotonPath(const PassContext &pass, uint32_t number, PhotonChunk &out)
+  PhotonPath(const PassContext &pass, const PhotonTask &task, uint32_t number, PhotonChunk &out)
       : pass_(pass),
         scene_(pass.scene),
         settings_(pass.settings),
-        sampler_(settings_.seed, kStreamPhotons + uint32_t(pass.pass), number),
+        task_(task),
+        sampler_(settings_.seed, task.stream + uint32_t(pass.pass), number),
         index_(PassContext::wavelength_index(sampler_.get1d(kDimWavelength))),
         w_(pass.wavelengths[index_]),
         out_(out) {}
 
   void trace() {
     if (!emit()) return;
-    for (int events = 0; events < kMaxEvents; ++events)
-      if (!step(uint32_t(events))) return;
+    out_.energy.emitted += double(flux_[0]);
+    for (int events = 0; events < kMaxEvents; ++events) {
+      const double before = double(flux_[0]);
+      const bool goes_on = step(uint32_t(events));
+      const double after = goes_on || end_ != End::Absorbed ? double(flux_[0]) : 0.0;
+      out_.energy.absorbed += before - after;
+      if (goes_on) continue;
+      if (end_ == End::Stored) out_.energy.stored += after;
+      if (end_ == End::Escaped) out_.energy.escaped += after;
+      return;
+    }
+    out_.energy.absorbed += double(flux_[0]);
   }
 
  private:
+  // How a photon that does not go on has ended.
+  enum class End : uint8_t { Absorbed, Stored, Escaped };
+  bool ended(End end) {
+    end_ = end;
+    return false;
+  }
+
   bool emit() {
     static const std::vector<EmissionTarget> kEverywhere;
     const bool aimed = settings_.photons_carry == OPAL_CARRY_CAUSTICS;
@@ -38,7 +57,7 @@ class PhotonPath {
       return false;
     if (!source_emits_photons(scene_, settings_.photons_carry, sample.source)) return false;
     ray_ = sample.ray;
-    flux_ = sample.flux * (1.0f / float(settings_.photons_per_pass));
+    flux_ = sample.flux * (1.0f / float(task_.count));
     start_ = flux_.max();
     media_ = scene_.any_medium ? media_at(scene_, ray_.origin) : MediumSet{};
     return flux_.is_finite() && start_ > 0;
@@ -48,19 +67,14 @@ class PhotonPath {
     const uint32_t kind = sharp_events_ + rough_events_ == 0 ? uint32_t(OPAL_RAY_ALL & ~OPAL_RAY_CAMERA) : ray_kind_;
     const Hit hit = scene_.intersect(ray_, kind);
     ++out_.rays;
-    if (!media_.empty() && any_varies(scene_, media_)) {
+    if (!media_.empty()) {
       bool alive = true;
-      if (travel_in_varying_medium(hit, bounce_dimension(events, 0), alive)) return alive;
-    } else if (!media_.empty()) {
-      const MediumHere here = medium_here(scene_, media_, w_);
-      if (photon_goes_on(settings_.photons_carry)) {
-        bool alive = true;
-        if (scatter_in_medium(here, hit.t, bounce_dimension(events, 0), alive)) return alive;
-      } else {  // what media scatter is left to the camera's paths; the photon carries on what passes
-        flux_ *= transmittance_over(here.extinction, hit.valid() ? hit.t : 0);
-      }
+      const uint32_t dimension = bounce_dimension(events, 0);
+      const bool ended_there = any_varies(scene_, media_) ? travel_in_varying_medium(hit.t, dimension, alive)
+                                                          : travel_in_medium(hit.t, dimension, alive);
+      if (ended_there) return alive;
     }
-    if (!hit.valid()) return false;
+    if (!hit.valid()) return ended(End::Escaped);
     absorb(scene_, interior_, hit.t, w_, flux_);
     const Material &material = scene_.material_at(hit);
     if (material.no_surface()) {
@@ -76,7 +90,9 @@ class PhotonPath {
       return true;
     }
     if (sharp_events_ + rough_events_ == 0 && !emission_reaches(emitted_, surface_.sp.p)) return false;
-    if (surface_.has_smooth_lobe && photon_is_left(settings_.photons_carry, sharp_events_, rough_events_)) leave();
+    const bool left = surface_.has_smooth_lobe && photon_is_left(settings_.photons_carry, sharp_events_, rough_events_);
+    if (left && task_.on_surfaces) leave();
+    end_ = left ? End::Stored : End::Absorbed;  // if this is where it ends
     if (!surface_.caster && !photon_goes_on(settings_.photons_carry) && !has_transparent_lobe()) return false;
 
     const uint32_t dimension = bounce_dimension(events, 0);
@@ -84,6 +100,7 @@ class PhotonPath {
     if (!bsdf_sample(surface_.closures, surface_.sp, w_, Transport::Flux, sampler_.get1d(dimension + kDimBsdfLobe),
                      sampler_.get2d(dimension + kDimBsdf), sample))
       return false;
+    end_ = End::Absorbed;
     flux_ *= sample.weight;
     for (int i = 0; i < kWavelengths; ++i) {
       path_pdf_[i] *= sample.pdf[i] / sample.pdf[0];
@@ -96,7 +113,8 @@ class PhotonPath {
       return true;
     }
     const EventClass event = classify(surface_, sample, w_, Transport::Flux, sampler_.get1d(dimension + kDimSpare));
-    if (event == EventClass::Rough && !photon_goes_on(settings_.photons_carry)) return false;
+    if (event == EventClass::Rough && !photon_goes_on(settings_.photons_carry))
+      return ended(left ? End::Stored : End::Absorbed);
     (event == EventClass::Rough ? rough_events_ : sharp_events_) += 1;
     if (!(sample.scattering & kScatterSpecular) && ++rough_bounces_ > settings_.max_depth) return false;
     if (sample.scattering & kScatterTransmit) {
@@ -116,13 +134,36 @@ class PhotonPath {
     return true;
   }
 
-  // A free path in the media; true: it ended before t_end, with a scattering (alive) or an absorption.
-  bool scatter_in_medium(const MediumHere &here, float t_end, uint32_t dimension, bool &alive) {
+  // Through media up to t_end. True: the way ended before, with a scattering (alive) or an absorption.
+  bool travel_in_medium(float t_end, uint32_t dimension, bool &alive) {
+    const MediumHere here = medium_here(scene_, media_, w_);
+    if (!(here.extinction.max() > 0)) return false;
+    const bool left = here.scatters() && photon_is_left(settings_.photons_carry, sharp_events_, rough_events_);
+    const bool stores = left && task_.in_media;
+    const bool as_beams = settings_.volume_estimate == OPAL_VOLUME_BEAMS;
+    if (stores && as_beams) leave_beam(here, t_end);
+
+    // The free path; photons of other wavelengths share it, weighed by what they would have done (Wilkie et al. 2014).
     const float sigma = here.extinction[0];
-    if (!(sigma > 0)) return false;
-    const float t = -std::log1p(-sampler_.get1d(dimension + kDimMedium)) / sigma;
+    const float t = sigma > 0 ? -std::log1p(-sampler_.get1d(dimension + kDimMedium)) / sigma : kInfinity;
+    const bool collides = t < t_end;
+    if (collides && t < reaches_from() && photon_goes_on(settings_.photons_carry)) {
+      alive = false;
+      end_ = End::Absorbed;
+      return true;
+    }
+    if (stores && !as_beams && collides) leave_in_medium(here, t);
+    if (!photon_goes_on(settings_.photons_carry)) {
+      // What media scatter is done with: a share of the photon ends in them, and the rest carries on for surfaces.
+      const double before = double(flux_[0]);
+      flux_ *= transmittance_over(here.extinction, t_end);
+      if (left) out_.energy.stored += before - double(flux_[0]), out_.energy.absorbed -= before - double(flux_[0]);
+      alive = !flux_.is_zero();
+      end_ = std::isfinite(t_end) ? End::Absorbed : End::Escaped;
+      return !alive;
+    }
     const Spectrum through = transmittance_over(here.extinction, std::min(t, t_end));
-    if (!(t < t_end)) {
+    if (!collides) {
       for (int i = 0; i < kWavelengths; ++i) {
         flux_[i] *= through[0] > 0 ? through[i] / through[0] : 0;
         path_pdf_[i] *= through[0] > 0 ? through[i] / through[0] : 0;
@@ -138,6 +179,7 @@ class PhotonPath {
     // Absorbed with the albedo's complement.
     const float albedo = here.scattering[0] / sigma;
     alive = pdf > 0 && sampler_.get1d(dimension + kDimRoulette) < albedo && settings_.max_depth > 0;
+    end_ = End::Absorbed;
     if (!alive) return true;
     const Spectrum phase = here.phase_value(w_, dot(forward, direction));
     flux_ *= through * here.scattering * here.scattered(w_, forward, direction, nullptr) / (pdf * albedo);
@@ -150,26 +192,47 @@ class PhotonPath {
   }
 
   // The same in media that vary.
-  bool travel_in_varying_medium(const Hit &hit, uint32_t dimension, bool &alive) {
-    RayMedia media(scene_, media_, w_, ray_);
-    RandomStream random(sampler_, dimension + kDimMedium);
-    Walk walk{flux_, path_pdf_, path_pdf_};
-    float depth = 0;
-    if (!photon_goes_on(settings_.photons_carry)) {
-      if (hit.valid()) pass_through(media, hit.t, random, walk, depth);
-      flux_ = walk.throughput, path_pdf_ = walk.light_pdf;
-      alive = !flux_.is_zero() && flux_.is_finite();
-      return !alive;
-    }
+  bool travel_in_varying_medium(float t_end, uint32_t dimension, bool &alive) {
+    const bool left = photon_is_left(settings_.photons_carry, sharp_events_, rough_events_);
+    const bool stores = left && task_.in_media, goes_on = photon_goes_on(settings_.photons_carry);
+    const bool as_beams = settings_.volume_estimate == OPAL_VOLUME_BEAMS;
+    if (stores && as_beams) leave_varying_beams(t_end, dimension);
+
     MediumHere here;
     float t = 0;
-    if (!fly(media, hit.t, random, walk, depth, t, here, [](const Spectrum &, const Spectrum &) {})) {
+    Walk walk{flux_, path_pdf_, path_pdf_};
+    bool collides = false;
+    if (goes_on || (stores && !as_beams)) {
+      RayMedia media(scene_, media_, w_, ray_);
+      RandomStream random(sampler_, dimension + kDimMedium);
+      float depth = 0;
+      collides = fly(media, t_end, random, walk, depth, t, here, [](const Spectrum &, const Spectrum &) {});
+      if (stores && !as_beams && collides && t >= reaches_from())
+        store_scattering(t, walk.throughput * here.scattering / walk.path_pdf.average());
+    }
+    if (!goes_on) {
+      const double before = double(flux_[0]);
+      if (std::isfinite(t_end)) {
+        RayMedia media(scene_, media_, w_, ray_);
+        RandomStream random(sampler_, dimension + kDimMediumDistance);
+        Walk passed{flux_, path_pdf_, path_pdf_};
+        float depth = 0;
+        pass_through(media, t_end, random, passed, depth);
+        flux_ = passed.throughput, path_pdf_ = passed.light_pdf;
+      }
+      if (left) out_.energy.stored += before - double(flux_[0]), out_.energy.absorbed -= before - double(flux_[0]);
+      alive = flux_.is_finite() && !flux_.is_zero();
+      end_ = std::isfinite(t_end) ? End::Absorbed : End::Escaped;
+      return !alive;
+    }
+    if (!collides) {
       flux_ = walk.throughput, path_pdf_ = walk.path_pdf;
       return false;
     }
+    end_ = End::Absorbed;
     const Vec3 forward = ray_.direction;
     const float albedo = here.scattering[0] / here.extinction[0];
-    alive = albedo > 0 && sampler_.get1d(dimension + kDimRoulette) < albedo && settings_.max_depth > 0;
+    alive = albedo > 0 && t >= reaches_from() && sampler_.get1d(dimension + kDimRoulette) < albedo && settings_.max_depth > 0;
     if (!alive) return true;
     float phase_pdf = 0;
     const Vec3 direction = here.sample_phase(w_, forward, sampler_.get1d(dimension + kDimBsdfLobe),
@@ -184,6 +247,70 @@ class PhotonPath {
     ray_kind_ = OPAL_RAY_SCATTER;
     ray_ = {ray_.origin + forward * t, direction, 0, kInfinity, ray_.time};
     return true;
+  }
+
+  // Leaves a scattering event at distance t: of the photons that collide there, the share that is scattered.
+  void leave_in_medium(const MediumHere &here, float t) {
+    const Spectrum through = transmittance_over(here.extinction, t);
+    store_scattering(t, flux_ * through * here.scattering / (path_pdf_ * through * here.extinction).average());
+  }
+
+  void store_scattering(float t, const Spectrum &flux) {
+    if (!flux.is_finite() || flux.is_zero()) return;
+    VolumePhoton photon;
+    photon.position = ray_.origin + ray_.direction * t;
+    photon.direction = pack_direction(ray_.direction);
+    photon.media = media_key(media_);
+    photon.set = PassContext::set_of(index_);
+    store(flux, photon.flux);
+    out_.volume.push_back(photon);
+  }
+
+  // Leaves the whole flight. One that leaves the scene ends where nothing is left of it, or far from everything.
+  void leave_beam(const MediumHere &here, float t_end) {
+    constexpr float kDepth = 16;  // exp(-16) = 1e-7
+    float weakest = here.extinction[0];
+    for (int k = 1; k < kWavelengths; ++k) weakest = std::min(weakest, here.extinction[k]);
+    const float from = reaches_from(), to = std::min({t_end, weakest > 0 ? kDepth / weakest : kInfinity, far_away()});
+    if (!(from < to)) return;
+    store_beam(from, to, flux_ * transmittance_over(here.extinction, from) / path_pdf_.average(), here.extinction);
+  }
+
+  // In media that vary: the flight in pieces over which an estimate of the transmittance is constant.
+  void leave_varying_beams(float t_end, uint32_t dimension) {
+    RayMedia media(scene_, media_, w_, ray_);
+    const Spectrum flux = flux_ / path_pdf_.average();
+    const float start = reaches_from();
+    transmittance_steps(media, std::min(t_end, far_away()), RandomStream(sampler_, dimension + kDimMarch),
+                        [&](float from, float to, const Spectrum &through) {
+                          if (std::max(from, start) < to) store_beam(std::max(from, start), to, flux * through, Spectrum(0.0f));
+                        });
+  }
+
+  void store_beam(float from, float to, const Spectrum &flux, const Spectrum &extinction) {
+    if (!flux.is_finite() || flux.is_zero()) return;
+    PhotonBeam beam;
+    beam.origin = ray_.origin + ray_.direction * from;
+    beam.direction = ray_.direction;
+    beam.length = to - from;
+    beam.media = media_key(media_);
+    beam.set = PassContext::set_of(index_);
+    store(flux, beam.flux);
+    for (int k = 0; k < kWavelengths; ++k) beam.extinction[PassContext::position_of(index_, uint32_t(k))] = extinction[k];
+    out_.beams.push_back(beam);
+  }
+
+  float far_away() const { return 16 * scene_.bounds.radius(); }
+
+  // Lamps with soft falloff do not light what is too near (emission_reaches).
+  float reaches_from() const {
+    if (sharp_events_ + rough_events_ > 0) return 0;
+    return std::max(0.0f, emission_reaches_from(emitted_) - length(ray_.origin - emitted_.ray.origin));
+  }
+
+  // By position in the set; of eight sets a lookup sees one.
+  void store(const Spectrum &flux, float *out) const {
+    for (int k = 0; k < kWavelengths; ++k) out[PassContext::position_of(index_, uint32_t(k))] = flux[k] * kWavelengthSets;
   }
 
   bool has_transparent_lobe() const {
@@ -203,9 +330,7 @@ class PhotonPath {
     photon.direction = pack_direction(sp.wo);
     photon.normal = pack_direction(sp.ng);
     photon.set = PassContext::set_of(index_);
-    // Of eight sets a lookup sees one.
-    for (int k = 0; k < kWavelengths; ++k)
-      photon.flux[PassContext::position_of(index_, uint32_t(k))] = flux[k] * kWavelengthSets;
+    store(flux, photon.flux);
     out_.photons.push_back(photon);
     splat(flux);
   }
@@ -245,6 +370,7 @@ class PhotonPath {
   const PassContext &pass_;
   const Scene &scene_;
   const opal_render_settings &settings_;
+  const PhotonTask &task_;
   const Sampler sampler_;
   const uint32_t index_;
   const Wavelengths &w_;
@@ -258,13 +384,14 @@ class PhotonPath {
   Surface surface_;
   Spectrum flux_{0.0f}, path_pdf_{1.0f};
   float start_ = 0;
+  End end_ = End::Absorbed;
   int sharp_events_ = 0, rough_events_ = 0, rough_bounces_ = 0;
 };
 
 }  // namespace
 
-void trace_photons(const PassContext &pass, uint32_t first, uint32_t last, PhotonChunk &out) {
-  for (uint32_t i = first; i < last; ++i) PhotonPath(pass, i, out).trace();
+void trace_photons(const PassContext &pass, const PhotonTask &task, uint32_t first, uint32_t last, PhotonChunk &out) {
+  for (uint32_t i = first; i < last; ++i) PhotonPath(pass, task, i, out).trace();
 }
 
 }  // namespace opal

@@ -218,6 +218,8 @@ void Scene::commit() {
   if (geometry_dirty || instances_dirty || lights_dirty) {
     any_transparent_shadow = false;
     any_medium = world_medium >= 0;
+    any_glowing_medium = false;
+    for (const Medium &m : media) any_glowing_medium |= m.emission >= 0;
     for (const Material &m : materials) {
       any_transparent_shadow |= (m.flags & (OPAL_MATERIAL_TRANSPARENT_SHADOW | OPAL_MATERIAL_NO_SURFACE)) != 0;
       any_medium |= m.medium >= 0;

@@ -131,6 +131,7 @@ struct Scene {
   double build_seconds = 0;
   bool any_transparent_shadow = false;  // a material that shadow rays must look through
   bool any_medium = false;              // rays must keep track of what they are in
+  bool any_glowing_medium = false;      // a medium gives off light
   bool geometry_dirty = true, instances_dirty = true, lights_dirty = true;
 
   Hit intersect(const Ray &ray, uint32_t visibility) const;
