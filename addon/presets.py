@@ -100,8 +100,8 @@ def read_out(gem: Any) -> Any:
 
 def index_chart(gem: Any) -> Any:
     """The `opal_kernels.charts.wavelength_curve.Chart` of a gem's n(λ); None where its numbers cannot be rendered."""
-    from opal_kernels.charts import wavelength_curve
     from opal_kernels import gem as gems
+    from opal_kernels.charts import wavelength_curve
     from opal_kernels.descriptions import wavelengths
     from opal_kernels.optics import species
 
@@ -113,8 +113,8 @@ def index_chart(gem: Any) -> Any:
 
 def absorption_chart(gem: Any) -> Any:
     """The `opal_kernels.charts.wavelength_curve.Chart` of a gem's absorption; None for a clear stone."""
-    from opal_kernels.charts import wavelength_curve
     from opal_kernels import gem as gems
+    from opal_kernels.charts import wavelength_curve
 
     settings = settings_of(gem)
     sigma = None if gems.absorption_refusal(settings) else gems.absorption(settings)

@@ -15,7 +15,6 @@ from opal_kernels.scene import Scene
 from .. import rainbow_tables
 from ..report import Report
 
-
 # Height over which rain thins out where the world does not say: of the order of a shower cloud's base.
 RAIN_HEIGHT = 1000.0
 

@@ -20,8 +20,9 @@ double smooth_density(double nm) {
 }
 
 void ColourTables::prepare(const opal_tables &tables, float first, float last) {
-  first_nm = clamp(first, float(kTableFirst), float(kTableFirst + kTableSize - 2));
-  last_nm = clamp(last, first_nm + 1, float(kTableFirst + kTableSize - 1));
+  // Whole nanometres, as the tables have them: a range between two nodes would have no probability at all.
+  first_nm = std::floor(clamp(first, float(kTableFirst), float(kTableFirst + kTableSize - 2)));
+  last_nm = std::ceil(clamp(last, first_nm + 1, float(kTableFirst + kTableSize - 1)));
   const auto inside = [&](int i) {
     // Trapezoid weight of sample i within [first, last]: the sum below equals the integral that sampling estimates.
     const double nm = kTableFirst + i;
