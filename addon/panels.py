@@ -95,6 +95,22 @@ class OPAL_RENDER_PT_photons(_RenderPanel):
         column.prop(opal, "radius_shrink")
 
 
+class OPAL_RENDER_PT_volume_photons(_RenderPanel):
+    bl_label = "Media"
+    bl_parent_id = "OPAL_RENDER_PT_photons"
+
+    def draw_settings(self, layout: Any, opal: Any, context: Any) -> None:
+        layout.active = opal.photons_per_pass > 0
+        layout.prop(opal, "volume_estimate", text="Estimate")
+        column = layout.column(align=True)
+        column.active = opal.volume_estimate == "POINTS"
+        column.prop(opal, "march_steps", text="Steps")
+        column.prop(opal, "march_tolerance", text="Tolerance")
+        column = layout.column(align=True)
+        column.prop(opal, "volume_photons_per_pass", text="Photons per Pass")
+        column.prop(opal, "volume_radius", text="Radius")
+
+
 class OPAL_RENDER_PT_light_paths(_RenderPanel):
     bl_label = "Light Paths"
     bl_options = {"DEFAULT_CLOSED"}
@@ -249,6 +265,7 @@ CLASSES = (
     OPAL_RENDER_PT_sampling,
     OPAL_RENDER_PT_denoise,
     OPAL_RENDER_PT_photons,
+    OPAL_RENDER_PT_volume_photons,
     OPAL_RENDER_PT_light_paths,
     OPAL_RENDER_PT_spectrum,
     OPAL_RENDER_PT_spectral_output,

@@ -51,7 +51,7 @@ class OpalSceneProperties(bpy.types.PropertyGroup):
         name="Photons Carry",
         description="Which light the photons bring; camera paths bring the rest. All choices converge to the same picture",
         items=(
-            ("CAUSTICS", "Caustics", "Light that reached a diffuse surface through a gem or glass or off a mirror"),
+            ("CAUSTICS", "Caustics", "Light that reached a diffuse surface or a medium through a gem or glass or off a mirror"),
             ("INDIRECT", "Indirect", "All light but that which comes straight from its source"),
             ("ALL", "All", "All light, as in Jensen's photon mapping"),
         ),
@@ -59,7 +59,7 @@ class OpalSceneProperties(bpy.types.PropertyGroup):
     )
     gather: IntProperty(
         name="Gather",
-        description="How many photons one estimate of light on a surface uses at most",
+        description="How many photons one estimate of light uses at most",
         default=64,
         min=1,
         soft_max=500,
@@ -81,6 +81,50 @@ class OpalSceneProperties(bpy.types.PropertyGroup):
         default=2.0 / 3.0,
         min=0.1,
         max=1.0,
+        subtype="FACTOR",
+    )
+    volume_estimate: EnumProperty(
+        name="Volume Estimate",
+        description="How light that photons bring to media is found. All three converge to the same picture",
+        items=(
+            ("POINTS", "Points", "Photons in spheres at steps along each ray (Jensen and Christensen 1998)"),
+            ("BEAM_RADIANCE", "Beam Radiance", "Photons as discs that each ray pierces, without steps (Jarosz 2008)"),
+            ("BEAMS", "Beams", "Whole flights of photons as beams that each ray crosses: least noise in thin media (Jarosz 2011)"),
+        ),
+        default="BEAMS",
+    )
+    volume_photons_per_pass: IntProperty(
+        name="Volume Photons",
+        description="How many photons each pass sends out for media alone; 0 lets the same photons serve surfaces and media",
+        default=0,
+        min=0,
+        soft_max=5_000_000,
+        max=100_000_000,
+    )
+    volume_radius: FloatProperty(
+        name="Volume Radius",
+        description="Radius within which photons in media count in the first pass; 0 takes Radius, and if that is 0 too, chooses by the photons",
+        default=0.0,
+        min=0.0,
+        soft_max=1.0,
+        precision=5,
+        subtype="DISTANCE",
+    )
+    march_steps: IntProperty(
+        name="March Steps",
+        description="Places along each ray where Points looks for photons",
+        default=16,
+        min=1,
+        soft_max=64,
+        max=256,
+    )
+    march_tolerance: FloatProperty(
+        name="March Tolerance",
+        description="A step of Points is halved where its light differs from its neighbour's by more than this share; 0 halves none",
+        default=0.5,
+        min=0.0,
+        soft_max=1.0,
+        max=100.0,
         subtype="FACTOR",
     )
     max_depth: IntProperty(

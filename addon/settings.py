@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from opal_kernels.descriptions import Carry, Filter, Pass, RenderSettings
+from opal_kernels.descriptions import Carry, Filter, Pass, RenderSettings, VolumeEstimate
 
 PREVIEW_PASSES = 16
 PREVIEW_SECONDS = 3.0
@@ -79,6 +79,11 @@ def render_settings(scene: Any, frame: Frame, passes: Sequence[Pass] = (), previ
         gather=opal.gather,
         radius=opal.radius,
         radius_shrink=opal.radius_shrink,
+        volume_estimate=VolumeEstimate[opal.volume_estimate],
+        volume_photons=min(opal.volume_photons_per_pass, photons) if preview else opal.volume_photons_per_pass,
+        volume_radius=opal.volume_radius,
+        march_steps=opal.march_steps,
+        march_tolerance=opal.march_tolerance,
         max_depth=opal.max_depth,
         transparent_depth=opal.transparent_depth,
         wavelength_first=first,
