@@ -270,6 +270,11 @@ class OpalMaterialProperties(bpy.types.PropertyGroup):
         default="SURFACE",
     )
     gem: PointerProperty(type=gem_properties.OpalGemProperties, name="Gem")
+    use_medium: BoolProperty(
+        name="Clouded",
+        description="Fills the gem with a medium: milky opal, clouded quartz",
+        default=False,
+    )
     medium: PointerProperty(type=media_properties.OpalMediumProperties, name="Medium")
     rainbow: PointerProperty(type=rainbow_properties.OpalRainbowProperties, name="Rainbow")
 

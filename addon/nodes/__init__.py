@@ -7,5 +7,19 @@ One reader a node, in files by subject: `shaders`, `textures`, `converters`, `ve
 
 from .compile import compile_light_nodes, compile_material, compile_missing, compile_world
 from .context import CompiledProgram, NodeContext, Problem
+from .volumes import CompiledVolume, compile_volume, default_volume, has_surface, has_volume
 
-__all__ = ["CompiledProgram", "NodeContext", "Problem", "compile_light_nodes", "compile_material", "compile_missing", "compile_world"]
+__all__ = [
+    "CompiledProgram",
+    "CompiledVolume",
+    "NodeContext",
+    "Problem",
+    "compile_light_nodes",
+    "compile_material",
+    "compile_missing",
+    "compile_volume",
+    "compile_world",
+    "default_volume",
+    "has_surface",
+    "has_volume",
+]

@@ -46,8 +46,6 @@ def compile_material(material: Any, context: NodeContext) -> CompiledProgram:
         return _finished(compiler)
     frame = Frame(material.node_tree)
     compiler.default_normal = _displaced_normal(compiler, frame, output, material)
-    if output.inputs["Volume"].is_linked:
-        compiler.problem(output.name, "Volumes are not read from node trees; the surface alone is shown.")
     _shade(compiler, frame, output)
     return _finished(compiler)
 
@@ -73,8 +71,6 @@ def compile_world(world: Any, context: NodeContext) -> CompiledProgram:
     if output is None:
         compiler.problem("", "The world has no output node; it is black.")
         return _finished(compiler)
-    if output.inputs["Volume"].is_linked:
-        compiler.problem(output.name, "The world's volume is not read; there is clear air.")
     _shade(compiler, Frame(world.node_tree), output)
     return _finished(compiler)
 

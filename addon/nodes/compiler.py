@@ -7,14 +7,14 @@ every shader node is met once, with the sum of what all ways to it leave.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from . import operations as ops
 from .context import NodeContext, Problem
 from .operations import Op
 from .program import ONE, ZERO, Input, ProgramBuilder, Table, Value, constant
-from .registry import SHADER_READERS, VALUE_READERS
+from .registry import SHADER_READERS, VALUE_READERS, ShaderReader
 from .tree import EndlessGroups, Frame, Links, Source, source_of
 
 _MIX, _ADD = "ShaderNodeMixShader", "ShaderNodeAddShader"
@@ -177,8 +177,22 @@ class Compiler:
 
     # ---- Shaders ----
 
-    def shade(self, frame: Frame, socket: Any) -> None:
-        """Emits the lobes of everything that reaches a shader input."""
+    def shade(
+        self,
+        frame: Frame,
+        socket: Any,
+        readers: Mapping[str, ShaderReader] = SHADER_READERS,
+        instead: str = "a grey diffuse surface is shown",
+    ) -> None:
+        """Hands everything that reaches a shader input to its reader, with its weight.
+
+        Parameters
+        ----------
+        readers : mapping
+            By node type; surfaces' readers emit lobes.
+        instead : str
+            What is done with nodes that have no reader.
+        """
         first = self._source(frame, socket)
         if first.node is None:
             return
@@ -193,11 +207,11 @@ class Compiler:
                 for child, part in self._parts(source, view, weight):
                     key = _node_key(child)
                     weights[key] = self.builder.math("ADD", weights[key], part) if key in weights else part
-            elif reader := SHADER_READERS.get(source.node.bl_idname):
+            elif reader := readers.get(source.node.bl_idname):
                 reader(view, weight)
             else:
-                view.problem(f"Opal does not read {source.node.bl_label} nodes; a grey diffuse surface is shown.")
-                if not self.is_world:
+                view.problem(f"Opal does not read {source.node.bl_label} nodes here; {instead}.")
+                if not self.is_world and readers is SHADER_READERS:
                     self.builder.emit(Op.DIFFUSE, 0, weight, constant(0.8, 0.8, 0.8), ZERO, self.default_normal)
 
     def _shader_nodes(self, first: Source) -> Iterator[Source]:

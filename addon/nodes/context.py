@@ -41,6 +41,9 @@ class NodeContext(Protocol):
     def attribute_id(self, name: str) -> int:
         """The number by which programs read a mesh attribute. The empty name is the UV map that renders."""
 
+    def attribute_name(self, number: int) -> str:
+        """The name that `attribute_id` gave this number."""
+
     def image_index(self, image: Any, image_user: Any) -> int:
         """The kernel scene's number of an image, at the image user's frame; -1 where it cannot be read."""
 

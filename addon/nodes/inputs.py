@@ -77,6 +77,13 @@ def attribute(n: NodeView) -> dict[str, Value]:
     return _attribute(n, n.node.attribute_name)
 
 
+@reads("ShaderNodeVolumeInfo")
+def volume_info(n: NodeView) -> dict[str, Value]:
+    """Grids of smoke under their usual names."""
+    names = {"Color": "color", "Density": "density", "Flame": "flame", "Temperature": "temperature"}
+    return {output: _attribute(n, name)["Color" if output == "Color" else "Fac"] for output, name in names.items()}
+
+
 @reads("ShaderNodeVertexColor")
 def color_attribute(n: NodeView) -> dict[str, Value]:
     name = n.node.layer_name

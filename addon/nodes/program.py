@@ -193,6 +193,29 @@ class ProgramBuilder:
         """A colour and a number in the fourth lane."""
         return self.emit(Op.PACK, 1, color, number)
 
+    def scaled_attribute(self, value: Value) -> tuple[float, int | None] | None:
+        """(scale, attribute number) of a value that is a constant times an attribute's number; number None: the constant alone."""
+        scale = 1.0
+        while value.constant is None:
+            made = self._code[value.instruction]
+            if made.op is Op.ATTRIBUTE and made.mode == ops.ATTRIBUTE["FACTOR"]:
+                return scale, made.inputs[0]
+            if made.op is Op.GREY and isinstance(made.inputs[0], Value) and made.inputs[0].constant is None:
+                inner = self._code[made.inputs[0].instruction]
+                if inner.op is Op.ATTRIBUTE and inner.mode == ops.ATTRIBUTE["COLOR"]:
+                    return scale, inner.inputs[0]  # of one component: all lanes alike
+            if made.op is not Op.MATH or made.mode != ops.MATH["MULTIPLY"]:
+                if made.op is Op.MATH and made.mode == ops.MATH["MAXIMUM"] and ZERO in made.inputs and scale >= 0:
+                    value = made.inputs[0] if made.inputs[1] == ZERO else made.inputs[1]  # grids are never negative
+                    continue
+                return None
+            a, b = made.inputs[:2]
+            fixed, value = (a, b) if a.constant is not None else (b, a)
+            if fixed.constant is None:
+                return None
+            scale *= fixed.constant[0]
+        return scale * value.constant[0], None
+
     # ---- The end ----
 
     @property
@@ -234,6 +257,14 @@ class ProgramBuilder:
             rows = np.nan_to_num(np.array(constants, np.float64).reshape(n_constants, 4)).astype(np.float32)
         rows = np.nan_to_num(rows)
         return code, rows, n_constants + n_variables
+
+    def finish_value(self, value: Value) -> tuple[np.ndarray, np.ndarray, int]:
+        """A program, as `finish` gives it, whose emission is this value; the builder is as before."""
+        self._code.append(_Instruction(Op.EMISSION, 0, (ONE, value, ONE)))
+        try:
+            return self.finish()
+        finally:
+            self._code.pop()
 
     def _live(self) -> list[int]:
         """Numbers of the instructions that a lobe depends on, in order."""

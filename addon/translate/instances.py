@@ -14,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from .voxels import source_of
+
 # Ray visibility of an object: property, OPAL_RAY_* bit.
 _VISIBILITY = (
     ("visible_camera", 1),
@@ -34,8 +36,10 @@ class Group:
 
     Attributes
     ----------
-    mesh : bpy.types.Mesh
+    mesh : bpy.types.Mesh or bpy.types.Volume
         Evaluated; valid until the depsgraph changes.
+    grids : Source or None
+        Voxels of a volume or of a smoke domain.
     rows : ndarray
         Numbers of the instances in the depsgraph's order.
     transforms : ndarray
@@ -54,6 +58,7 @@ class Group:
     transforms: np.ndarray
     object_info: np.ndarray
     transforms_end: np.ndarray | None = None  # at shutter close
+    grids: Any = None
 
 
 @dataclass
@@ -78,6 +83,7 @@ class _Look:
     pass_index: float
     color: tuple[float, ...]
     random: float
+    grids: Any = None
 
 
 def collect(
@@ -108,7 +114,7 @@ def collect(
     usable = np.isfinite(matrices).all(axis=(1, 2))
     usable[usable] = np.abs(np.linalg.det(matrices[usable, :3, :3].astype(np.float64))) > _SMALLEST_VOLUME
 
-    context = _LayerContext(depsgraph)
+    context = _LayerContext(depsgraph, visible.problems)
     looks: list[_Look | None] = []
     look_of: dict[tuple, int] = {}
     look_rows = np.full(len(matrices), -1, np.int32)
@@ -119,13 +125,13 @@ def collect(
             if on_light is not None and np.isfinite(matrices[row]).all():
                 on_light(obj, matrices[row])
             continue
-        if kind != "MESH":
+        if kind not in {"MESH", "VOLUME"}:
             _note_unreadable(obj, kind, visible.problems)
             continue
         is_copy = instance.is_instance
         source = instance.instance_object if is_copy else obj
         parent = instance.parent if is_copy else None
-        mesh = obj.to_mesh() if obj.mode == "EDIT" and not is_copy else obj.data
+        mesh = obj.to_mesh() if kind == "MESH" and obj.mode == "EDIT" and not is_copy else obj.data
         identity = (
             source.as_pointer() if source is not None else 0,
             mesh.as_pointer(),
@@ -154,7 +160,8 @@ def read_matrices(depsgraph: Any) -> np.ndarray:
 class _LayerContext:
     """The view layer's say in what an object looks like."""
 
-    def __init__(self, depsgraph: Any) -> None:
+    def __init__(self, depsgraph: Any, problems: list[tuple[str, str]]) -> None:
+        self.problems = problems
         self.layer = depsgraph.view_layer
         self.override = depsgraph.view_layer_eval.material_override
 
@@ -170,7 +177,15 @@ class _LayerContext:
         if not instance.is_instance and not instance.show_self:
             visibility = 0
         receivers = receiver_set(parent.original if parent is not None else original)
-        key = (mesh.as_pointer(), tuple(m.as_pointer() if m else 0 for m in materials), visibility, holdout, receivers)
+        grids = source_of(obj, lambda sentence: self.problems.append((original.name, sentence)))
+        key = (
+            mesh.as_pointer(),
+            tuple(m.as_pointer() if m else 0 for m in materials),
+            visibility,
+            holdout,
+            receivers,
+            grids.key if grids is not None else 0,
+        )
         return _Look(
             key=key,
             name=original.name,
@@ -182,6 +197,7 @@ class _LayerContext:
             pass_index=float(obj.pass_index),
             color=tuple(obj.color),
             random=object_random(original.name),
+            grids=grids,
         )
 
     def _materials(self, obj: Any, source: Any, mesh: Any) -> tuple[Any, ...]:
@@ -202,7 +218,6 @@ def _ray_visibility(obj: Any) -> int:
 _UNREADABLE = {
     "CURVES": "hair curves are not rendered",
     "POINTCLOUD": "point clouds are not rendered",
-    "VOLUME": "volumes are not rendered",
     "GREASEPENCIL": "Grease Pencil is not rendered",
 }
 
@@ -256,6 +271,7 @@ def _group(
                 rows=mine,
                 transforms=np.ascontiguousarray(matrices[mine, :3]),
                 object_info=info,
+                grids=look.grids,
             )
         )
 

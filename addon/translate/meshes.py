@@ -127,6 +127,28 @@ def read_mesh(mesh: Any, needs: MeshNeeds | None = None) -> MeshArrays | None:
     return arrays
 
 
+def is_closed(mesh: Any) -> bool:
+    """Whether every edge of an evaluated mesh has two faces, so that the mesh has an inside."""
+    if len(mesh.polygons) == 0:
+        return False
+    edges = _attribute(mesh, ".corner_edge", 1, np.int32, "value")
+    faces = np.bincount(edges, minlength=len(mesh.edges))
+    return bool(((faces == 2) | (faces == 0)).all())
+
+
+def box_of(mesh: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Corners (low, high) of a mesh that has vertices."""
+    positions = _attribute(mesh, "position", 3, np.float32, "vector")
+    return positions.min(axis=0).astype(float), positions.max(axis=0).astype(float)
+
+
+def box_mesh(low: np.ndarray, high: np.ndarray) -> MeshArrays:
+    """A closed box: what bounds the grids of a volume object."""
+    corners = np.array([[(low, high)[i >> a & 1][a] for a in range(3)] for i in range(8)], np.float32)
+    quads = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
+    return MeshArrays(corners, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))], np.int32))
+
+
 def _generated(mesh: Any, n_vertices: int) -> np.ndarray:
     """Generated coordinates: the undeformed vertices in the mesh's texture space, 0 to 1."""
     undeformed = _read(mesh.vertices, "undeformed_co", n_vertices, 3, np.float32)

@@ -51,6 +51,10 @@ class NodeContext:
         """The number of an attribute; an empty name is the UV map that renders."""
         return self._attributes.setdefault(name, len(self._attributes))
 
+    def attribute_name(self, number: int) -> str:
+        """The name of an attribute by its number."""
+        return next(name for name, known in self._attributes.items() if known == number)
+
     def image_index(self, image: Any, image_user: Any) -> int:
         """The number of an image; -1 where it cannot be read."""
         return self._images.index(image, image_user)

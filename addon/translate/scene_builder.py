@@ -18,11 +18,12 @@ from opal_kernels.scene import Scene
 from ..report import Report
 from .instances import Group, collect
 from .lights import LightLinks, light_from_object, out_of_range
-from .materials import Materials
-from .meshes import MeshArrays, MeshNeeds, read_mesh
+from .materials import Materials, fills
+from .meshes import MeshArrays, MeshNeeds, box_mesh, box_of, is_closed, read_mesh
 from .node_context import NodeContext
 from .rainbow import Rain
-from .world import world_from_scene
+from .volumes import Body
+from .world import add_world_medium, world_from_scene
 
 # A stone of 6.5 mm, one carat of diamond, for the ball of 2 m in Blender's preview.
 _PREVIEW_ABSORPTION = 0.0065 / 2.0
@@ -107,18 +108,36 @@ class SceneBuilder:
         if world is not None:
             self.scene.set_world(world)
         self._fill_world(override or depsgraph.scene_eval.world)
+        bodies: list[Body | None] = []
         for group in visible.groups:
-            snapshot.materials.append([self._materials.number(m) for m in group.materials or (None,)])
+            body = self._body(group)
+            snapshot.materials.append(
+                [self._materials.number(m, body if fills(m) or group.grids is not None else None) for m in group.materials or (None,)]
+            )
+            bodies.append(body)
 
         needs = self._context.mesh_needs()
         for count, group in enumerate(visible.groups):
             self._stage(f"Reading meshes, {count + 1} of {len(visible.groups)}")
-            snapshot.mesh_of_group.append(self._read_mesh(group, needs, snapshot))
+            snapshot.mesh_of_group.append(self._read_mesh(group, needs, snapshot, bodies[count - 1]))
         snapshot.groups = visible.groups
         return snapshot
 
+    def _body(self, group: Group) -> Body | None:
+        """What a group's materials fill, where any of them fills; `None` for surfaces alone."""
+        mesh, transform = group.mesh, group.transforms[0]
+        if not hasattr(mesh, "polygons"):
+            return Body(group.name, group.grids, None, transform, mesh.as_pointer(), is_volume=True)
+        if not any(fills(m) for m in group.materials):
+            return None
+        box = box_of(mesh) if len(mesh.vertices) else (np.zeros(3), np.zeros(3))
+        return Body(group.name, group.grids, box, transform, mesh.as_pointer(), closed=is_closed(mesh))
+
     def _fill_world(self, world: Any) -> None:
-        if world is None or world.opal.kind != "RAINBOW":
+        if world is None:
+            return
+        if world.opal.kind != "RAINBOW":
+            add_world_medium(world, self.scene, self._context, self._materials.volumes, self._report)
             return
         try:
             self.scene.set_world_medium(self.rain.add_world(world))
@@ -132,9 +151,12 @@ class SceneBuilder:
             self._lamp_spectra[key] = self.scene.add_spectrum(values)
         return self._lamp_spectra[key]
 
-    def _read_mesh(self, group: Group, needs: MeshNeeds, snapshot: Snapshot) -> int:
+    def _read_mesh(self, group: Group, needs: MeshNeeds, snapshot: Snapshot, body: Body | None) -> int:
         key = group.mesh.as_pointer()
-        if key not in snapshot.meshes:
+        if body is not None and body.is_volume:
+            box = body.bounds()
+            snapshot.meshes.setdefault(key, box_mesh(*box) if box is not None else None)
+        elif key not in snapshot.meshes:
             arrays = snapshot.meshes[key] = read_mesh(group.mesh, needs)
             for sentence in arrays.problems if arrays is not None else ():
                 self._report.add(group.name, sentence)
@@ -153,6 +175,8 @@ class SceneBuilder:
             group.transforms_end = later.transforms
             arrays = snapshot.meshes[key]
             if arrays is None or arrays.positions_end is not None:
+                continue
+            if not hasattr(later.mesh, "vertices"):
                 continue
             positions = read_positions(later.mesh)
             if positions.shape == arrays.positions.shape and not np.array_equal(positions, arrays.positions):

@@ -57,6 +57,49 @@ def map_width(world: Any) -> int:
     return min(width, LARGEST_MAP) or SMALLEST_MAP
 
 
+def add_world_medium(world: Any, scene: Any, context: Any, volumes: Any, report: Any) -> None:
+    """Fills the world with what `world.opal` or the Volume socket of its node tree says.
+
+    A medium that is the same to infinity lets no sun and no sky through, in Opal as in Cycles: the report says so, and lamps
+    within it shine as ever.
+    """
+    from opal_kernels.descriptions import Density
+
+    from ..nodes import compile_volume
+    from .volumes import Body
+
+    settings = world.opal
+    body = Body(world.name, box=((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)))
+    if settings.kind == "MEDIUM":
+        fields = {}
+        if settings.scale_height > 0.0:
+            fields = {"density": Density.HEIGHT, "scale_height": settings.scale_height, "base_height": settings.base_height}
+            if settings.medium.density != "HOMOGENEOUS":
+                report.add(world.name, "A world's medium thins with height or varies by noise, not both; it thins with height.")
+        medium = volumes.add_medium(settings.medium, body, **fields)
+        endless = settings.scale_height == 0.0 and settings.medium.extinction > 0.0
+    else:
+        compiled = compile_volume(world, context)
+        if compiled is None:
+            return
+        context.note(compiled.problems)
+        if any(c.program is not None for c in (compiled.scattering, compiled.absorption, compiled.emission)):
+            report.add(world.name, "The world's volume is the same everywhere in Opal; what varies from place to place is left out.")
+            for kind in ("scattering", "absorption", "emission"):
+                if getattr(compiled, kind).program is not None:
+                    setattr(compiled, kind, type(compiled.scattering)())
+        medium = volumes.add_compiled(compiled, body)
+        endless = compiled.scattering.present or compiled.absorption.present
+    if medium < 0:
+        return
+    scene.set_world_medium(medium)
+    if endless:
+        report.add(
+            world.name,
+            "The medium has no end, so neither the sun nor the sky shines through it; give it a scale height, or put it in a closed mesh.",
+        )
+
+
 def world_from_scene(world: Any, context: Any) -> tuple[World | None, list[Any]]:
     """The world as the tracer takes it.
 

@@ -228,6 +228,22 @@ typedef struct opal_mesh_desc {
   int32_t reserved;
 } opal_mesh_desc;
 
+/* Places inside of an object at which a program is asked for what it emits. */
+typedef struct opal_places_desc {
+  int64_t n;
+  const float *positions;   /* n x 3, object space */
+  const float *generated;   /* n x 3 texture coordinates, or NULL: zeros */
+  const float *transform;   /* 12: object to world, or NULL: the identity */
+  const float *object_info; /* 8, as in opal_instances_desc, or NULL */
+  const opal_attribute_desc *attributes; /* of domain OPAL_DOMAIN_VERTEX: one value a place */
+  int32_t n_attributes;
+  int32_t reserved;
+} opal_places_desc;
+
+/* Writes what `program` emits at n places to out (n x 3): node trees of volumes become grids so. */
+OPAL_EXPORT int32_t opal_scene_evaluate(const opal_scene *scene, const opal_program *program, const opal_places_desc *places,
+                                        float *out);
+
 /* Triangles with non-finite corners are dropped; *n_dropped (may be NULL) says how many. */
 OPAL_EXPORT int32_t opal_scene_add_mesh(opal_scene *scene, const opal_mesh_desc *mesh, int32_t *n_dropped);
 

@@ -27,6 +27,7 @@ from .structures import (
     MediumStruct,
     MeshStruct,
     PhaseStruct,
+    PlacesStruct,
     SceneStatisticsStruct,
     TablesStruct,
     WorldStruct,
@@ -228,6 +229,64 @@ def scene_update_material(scene: int, index: int, program: Any = None, gem: Any 
     """Replaces a material."""
     keep: list[Any] = []
     checked(library().opal_scene_update_material(scene, index, byref(_material(program, gem, flags, keep, medium))))
+
+
+def scene_evaluate(
+    scene: int,
+    program: Any,
+    positions: Any,
+    *,
+    generated: Any = None,
+    transform: Any = None,
+    object_info: Any = None,
+    attributes: Sequence[Attribute] = (),
+) -> np.ndarray:
+    """What a program emits at places inside of an object.
+
+    Parameters
+    ----------
+    program : Program
+        Its emission is the answer.
+    positions : array_like
+        (n, 3), object space.
+    generated : array_like, optional
+        (n, 3) texture coordinates.
+    transform : array_like, optional
+        (3, 4) or (4, 4), object to world; None is the identity.
+    object_info : array_like, optional
+        (8,), as for `scene_add_instances`.
+    attributes : sequence of Attribute
+        One value a place.
+
+    Returns
+    -------
+    ndarray
+        (n, 3) float32, linear Rec.709.
+    """
+    positions = as_floats("positions", positions, (None, 3))
+    n = len(positions)
+    keep: list[Any] = [positions]
+    places = PlacesStruct(n=n, positions=pointer(positions))
+    if generated is not None:
+        keep.append(as_floats("generated", generated, (n, 3)))
+        places.generated = pointer(keep[-1])
+    if transform is not None:
+        keep.append(as_floats("transform", np.asarray(transform, np.float32)[:3].reshape(12), (12,)))
+        places.transform = pointer(keep[-1])
+    if object_info is not None:
+        keep.append(as_floats("object_info", object_info, (8,)))
+        places.object_info = pointer(keep[-1])
+    structs = (AttributeStruct * len(attributes))()
+    for struct, attribute in zip(structs, attributes, strict=True):
+        values = np.asarray(attribute.values, np.float32)
+        values = as_floats("attribute", values.reshape(n, -1) if n else values.reshape(0, 1), (n, None), finite=False)
+        keep.append(values)
+        struct.name, struct.domain, struct.components = attribute.name, 1, values.shape[1]
+        struct.values = pointer(values)
+    places.attributes, places.n_attributes = structs, len(attributes)
+    out = np.zeros((n, 3), np.float32)
+    checked(library().opal_scene_evaluate(scene, byref(program_struct(program, keep)), byref(places), pointer(out)))
+    return out
 
 
 def scene_add_mesh(

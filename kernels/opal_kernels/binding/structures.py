@@ -117,6 +117,19 @@ class AttributeStruct(ctypes.Structure):
     ]
 
 
+class PlacesStruct(ctypes.Structure):
+    _fields_ = [
+        ("n", c_int64),
+        ("positions", FloatPointer),
+        ("generated", FloatPointer),
+        ("transform", FloatPointer),
+        ("object_info", FloatPointer),
+        ("attributes", POINTER(AttributeStruct)),
+        ("n_attributes", c_int32),
+        ("reserved", c_int32),
+    ]
+
+
 class MeshStruct(ctypes.Structure):
     _fields_ = [
         ("n_vertices", c_int32),
@@ -281,6 +294,7 @@ STRUCTURES = {
     "opal_grid_faults": GridFaultsStruct,
     "opal_material_desc": MaterialStruct,
     "opal_attribute_desc": AttributeStruct,
+    "opal_places_desc": PlacesStruct,
     "opal_mesh_desc": MeshStruct,
     "opal_instances_desc": InstancesStruct,
     "opal_light_desc": LightStruct,

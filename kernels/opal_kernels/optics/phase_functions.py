@@ -98,3 +98,84 @@ class Table:
         """Return the asymmetry g, the mean of the cosine, exact for the piecewise linear table."""
         c0, c1, a, b = self._cosines[:-1], self._cosines[1:], self._values[:-1], self._values[1:]
         return float((2 * np.pi * (c1 - c0) * (a * (2 * c0 + c1) + b * (c0 + 2 * c1)) / 6).sum())
+
+
+def draine(cosine, anisotropy: float, alpha: float) -> np.ndarray:
+    """Return Draine's phase function (1/sr; ApJ 598 (2003) 1017): alpha 0 is Henyey-Greenstein, g = 0 and alpha = 1 is Rayleigh.
+
+    Parameters
+    ----------
+    cosine : array_like
+    anisotropy : float
+        g in (-1, 1); the mean cosine only where alpha is 0.
+    alpha : float
+        Not negative.
+    """
+    cosine = np.asarray(cosine, float)
+    return henyey_greenstein(cosine, anisotropy) * (1 + alpha * cosine**2) / (1 + alpha * (1 + 2 * anisotropy**2) / 3)
+
+
+def fournier_forand(cosine, index: float, backscatter: float) -> np.ndarray:
+    """Return the phase function of sea water (1/sr; Fournier and Jonasz, SPIE 3761 (1999)): particles of hyperbolic sizes.
+
+    Parameters
+    ----------
+    cosine : array_like
+    index : float
+        Of refraction of the particles in the water, above 1.
+    backscatter : float
+        Fraction of light sent backwards, in (0, 0.5); it fixes the slope of the sizes (Mobley et al., Appl. Opt. 41 (2002) 1035).
+    """
+    scale = 4 / (3 * (index - 1) ** 2)
+    half = scale / 2  # delta at 90 degrees
+    # Backscatter = 1 - (1 - half x - (1 - x)/2) / ((1 - half) x) with x = half^nu, solved for x.
+    x = 0.5 / ((1 - backscatter) * (1 - half) - 0.5 + half)
+    nu = np.log(x) / np.log(half)
+    sin2 = np.maximum((1 - np.asarray(cosine, float)) / 2, 1e-12)  # of half the angle
+    delta = scale * sin2
+    near_one = np.abs(delta - 1) < 1e-4
+    delta = np.where(near_one, 1 + 1e-4, delta)
+    power = delta**nu
+    first = nu * (1 - delta) - (1 - power) + (delta * (1 - power) - nu * (1 - delta)) / sin2
+    back = scale**nu
+    return first / (4 * np.pi * (1 - delta) ** 2 * power) + (1 - back) / (16 * np.pi * (scale - 1) * back) * (
+        3 * np.asarray(cosine, float) ** 2 - 1
+    )
+
+
+def fog(cosine, diameter_um: float) -> np.ndarray:
+    """Return the phase function of water drops (1/sr) by the fit of Jendersie and d'Eon, SIGGRAPH Talks 2023: two lobes.
+
+    Parameters
+    ----------
+    cosine : array_like
+    diameter_um : float
+        Of the drops, micrometres; taken within 0 to 50, where the fit was made.
+    """
+    d = float(np.clip(diameter_um, 1e-3, 50.0))
+    log = np.log(d)
+    if d <= 0.1:
+        g, g_draine, alpha = 13.8 * d * d, 1.1456 * d * np.sin(9.29044 * d), 250.0
+        weight = 0.252977 - 312.983 * d**4.3
+    elif d < 1.5:
+        g, alpha = 0.862 - 0.143 * log * log, 250.0
+        inner = np.cos((log - 0.238604) * (log + 1.00667) / (0.507522 - 0.15677 * log))
+        g_draine = 0.379685 * np.cos(1.19692 * inner + 1.37932 * log + 0.0625835) + 0.344213
+        weight = 0.146209 * np.cos(3.38707 * log + 2.11193) + 0.316072 + 0.0778917 * log
+    elif d < 5.0:
+        twice = np.log(log)
+        g, alpha = 0.0604931 * twice + 0.940256, 7.30354 * log + 6.31675
+        g_draine = 0.500411 - 0.081287 / (-2 * log + np.tan(log) + 1.27551)
+        weight = 0.026914 * (log - np.cos(5.68947 * (twice - 0.0292149))) + 0.376475
+    else:
+        g = np.exp(-0.0990567 / (d - 1.67154))
+        g_draine = np.exp(-2.20679 / (d + 3.91029) - 0.428934)
+        alpha = np.exp(3.62489 - 8.29288 / (d + 5.52825))
+        weight = np.exp(-0.599085 / (d - 0.641583) - 0.665888)
+    return (1 - weight) * henyey_greenstein(cosine, g) + weight * draine(cosine, g_draine, alpha)
+
+
+def table_angles(n: int = 1801) -> np.ndarray:
+    """Return angles from 0 to pi, as dense in front as sharp forward lobes need: steps grow with the angle."""
+    x = np.linspace(0, 1, n)
+    return np.pi * x**2

@@ -365,6 +365,52 @@ int32_t opal_scene_update_material(opal_scene *scene, int32_t index, const opal_
   });
 }
 
+int32_t opal_scene_evaluate(const opal_scene *scene, const opal_program *desc, const opal_places_desc *places, float *out) {
+  return guarded([&] {
+    require(scene && desc && places && out && places->n >= 0 && places->n < INT32_MAX && (places->n == 0 || places->positions),
+            "No places");
+    Program program;
+    const char *error = nullptr;
+    if (!program_from_desc(*desc, int(scene->images.size()), program, &error))
+      throw BadArgument(error ? error : "The program is not valid");
+    // Each place is a triangle without extent of a mesh made for the purpose.
+    const size_t n = size_t(places->n);
+    Mesh mesh;
+    mesh.positions = copy(places->positions, 3 * n);
+    mesh.generated = places->generated ? copy(places->generated, 3 * n) : std::vector<float>(3 * n, 0.0f);
+    mesh.triangles.resize(3 * n);
+    for (size_t i = 0; i < 3 * n; ++i) mesh.triangles[i] = int32_t(i / 3);
+    for (int32_t i = 0; i < places->n_attributes; ++i) {
+      const opal_attribute_desc &a = places->attributes[i];
+      require(a.values && a.components >= 1 && a.components <= 4 && a.domain == OPAL_DOMAIN_VERTEX,
+              "An attribute of places has 1 to 4 components for each");
+      mesh.attributes.push_back({a.name, a.domain, a.components, copy(a.values, n * size_t(a.components))});
+    }
+    Instance instance;
+    const Transform identity;
+    set_transform(instance, places->transform ? places->transform : identity.m, nullptr);
+    if (places->object_info) {
+      instance.random = places->object_info[0], instance.object_index = places->object_info[1];
+      std::copy(places->object_info + 2, places->object_info + 6, instance.color);
+    }
+    constexpr int64_t kChunk = 4096;
+    const std::atomic<bool> never{false};
+    parallel_for((places->n + kChunk - 1) / kChunk, resolve_threads(scene->threads), never, [&](int64_t chunk) {
+      for (int64_t i = chunk * kChunk; i < std::min(places->n, (chunk + 1) * kChunk); ++i) {
+        ShadingPoint sp;
+        sp.p = instance.to_world.point(mesh.vertex(int(i)));
+        sp.ng = sp.ns = sp.wo = {0, 0, 1};
+        sp.triangle = uint32_t(i);
+        sp.mesh = &mesh, sp.instance = &instance;
+        sp.ray_kind = OPAL_RAY_SCATTER;
+        const Vec3 emitted = run_emission(*scene, program, sp);
+        for (int c = 0; c < 3; ++c) out[3 * i + c] = emitted[c];
+      }
+    });
+    return 0;
+  });
+}
+
 int32_t opal_scene_add_mesh(opal_scene *scene, const opal_mesh_desc *desc, int32_t *n_dropped) {
   return guarded([&] {
     require(scene && desc && desc->n_vertices >= 0 && desc->n_triangles >= 0, "No mesh");
