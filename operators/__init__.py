@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from . import add_gem, add_rain, import_absorption, import_gemcad, rainbow_chart
+from . import add_gem, add_rain, gem_report, import_absorption, import_gemcad, rainbow_chart
 
-_MODULES = (add_gem, import_gemcad, import_absorption, add_rain, rainbow_chart)
+_MODULES = (add_gem, import_gemcad, import_absorption, gem_report, add_rain, rainbow_chart)
 
 
 def register() -> None:

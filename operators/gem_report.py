@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The eye of a gemmologist: light return, fire, leakage and the tilt curve of the active stone, as numbers and as a page."""
+
+from __future__ import annotations
+
+import math
+import threading
+from pathlib import Path
+from typing import Any
+
+import bpy
+from bpy.props import FloatProperty, IntProperty, StringProperty
+
+from ..addon import presets
+from . import image_files
+
+_NAME = "Gem Report"
+
+
+class OPAL_OT_gem_report(bpy.types.Operator):
+    """Judge the active stone as a gemmologist does"""
+
+    bl_idname = "opal.gem_report"
+    bl_label = "Gem Report"
+    bl_description = (
+        "Render the active stone face-up under a bright hemisphere with the shadow of the observer's head, and measure its light return, "
+        "fire, leakage and tilt curve; the stone looks up along its own Z axis"
+    )
+    bl_options = {"REGISTER"}
+
+    filepath: StringProperty(
+        name="File",
+        description="Where the page is written as PNG and its numbers, beside it, as text; empty keeps both in Blender alone",
+        default="",
+        subtype="FILE_PATH",
+    )
+    size: IntProperty(name="Size", description="Pixels across each picture of the stone", default=256, min=128, soft_max=1024, max=4096)
+    passes: IntProperty(name="Passes", description="Passes of eight samples a pixel for the pictures", default=16, min=1, soft_max=256)
+    head_angle: FloatProperty(
+        name="Head",
+        description="Full angle of the cone that the observer's head takes out of the hemisphere",
+        default=math.radians(30.0),
+        min=0.0,
+        max=math.radians(120.0),
+        subtype="ANGLE",
+    )
+    tilt: FloatProperty(
+        name="Tilt",
+        description="The tilt curve runs from minus this angle to this angle, about the stone's own X axis",
+        default=math.radians(30.0),
+        min=math.radians(1.0),
+        max=math.radians(80.0),
+        subtype="ANGLE",
+    )
+    tilt_steps: IntProperty(name="Tilt Steps", description="How many tilts the curve has", default=13, min=3, soft_max=61)
+
+    _timer: Any = None
+    _work: Any = None
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        obj = context.active_object
+        if obj is None or obj.type != "MESH":
+            cls.poll_message_set("Choose a stone: a mesh with a material of the kind Gem")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        if not self._prepare(context):
+            return {"CANCELLED"}
+        self._work.run()
+        return self._finish()
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        if not self._prepare(context):
+            return {"CANCELLED"}
+        self._work.start()
+        manager = context.window_manager
+        manager.progress_begin(0, 100)
+        self._timer = manager.event_timer_add(0.1, window=context.window)
+        manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if event.type == "ESC":
+            self._work.stopping = True
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        if self._work.is_alive():
+            context.window_manager.progress_update(int(100 * self._work.done))
+            if context.workspace is not None:
+                context.workspace.status_text_set(f"Gem report: {self._work.done:.0%}, Esc to stop")
+            return {"RUNNING_MODAL"}
+        self._end(context)
+        return self._finish()
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        self._work.stopping = True
+        self._work.join()
+        self._end(context)
+
+    def _end(self, context: bpy.types.Context) -> None:
+        context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.progress_end()
+        if context.workspace is not None:
+            context.workspace.status_text_set(None)
+
+    def _prepare(self, context: bpy.types.Context) -> bool:
+        obj = context.active_object
+        try:
+            stone = _stone_of(obj, context.evaluated_depsgraph_get())
+        except ValueError as error:
+            self.report({"ERROR"}, f"“{obj.name}”: {error}")
+            return False
+        self._work = _Work(self, stone, obj.name)
+        return True
+
+    def _finish(self) -> set[str]:
+        work = self._work
+        if work.sentence:
+            self.report({"ERROR"}, work.sentence)
+            return {"CANCELLED"}
+        if work.page is None:
+            self.report({"INFO"}, "The gem report was stopped.")
+            return {"CANCELLED"}
+        image = image_files.to_image(_NAME, work.page)
+        text = bpy.data.texts.get(_NAME) or bpy.data.texts.new(_NAME)
+        text.from_string(work.table)
+        if self.filepath:
+            path = Path(bpy.path.abspath(self.filepath)).with_suffix(".png")
+            try:
+                image_files.save_png(path, work.page)
+                path.with_suffix(".txt").write_text(work.table, encoding="utf-8")
+            except (OSError, RuntimeError) as error:
+                self.report({"ERROR"}, f"The report stays in Blender: {path} cannot be written ({error}).")
+                return {"FINISHED"}
+        shares = work.result.face_up
+        self.report(
+            {"INFO"},
+            f"{work.title}: light return {shares.light_return:.1%}, fire {work.result.fire:.2f}°, leakage {shares.leakage:.1%}; "
+            f"the page is the image “{image.name}”, the numbers the text “{text.name}”",
+        )
+        return {"FINISHED"}
+
+
+def _stone_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Any:
+    """An object as the `opal_kernels.gem_report.FacetedStone` it is at its scale; ValueError says what is wrong with it."""
+    import numpy as np
+    from opal_kernels import gem as gems
+    from opal_kernels.gem_report import FacetedStone
+
+    from ..addon.translate.materials import gem_spectra
+    from ..addon.translate.meshes import read_mesh
+
+    evaluated = obj.evaluated_get(depsgraph)
+    material = next((slot.material for slot in evaluated.material_slots if slot.material and slot.material.opal.kind == "GEM"), None)
+    if material is None:
+        raise ValueError("the stone has no material of the kind Gem")
+    gem = material.opal.gem
+    if gem.species == presets.CUSTOM and (sentence := gems.refusal(presets.settings_of(gem))):
+        raise ValueError(sentence)
+    arrays = read_mesh(evaluated.data)
+    if arrays is None:
+        raise ValueError("the stone has no faces")
+    scale = np.array(evaluated.matrix_world.to_scale())
+    positions = arrays.positions.astype(float) * scale
+    if not np.isfinite(positions).all() or not (scale != 0).all():
+        raise ValueError("the stone is scaled to nothing or has corners that are not finite")
+    triangles = arrays.triangles if scale.prod() > 0 else arrays.triangles[:, ::-1]
+    index, absorption = gem_spectra(gem)
+    return FacetedStone(positions, triangles, index, absorption)
+
+
+class _Work(threading.Thread):
+    """The report; it can be made in the operator's own thread or beside Blender's. It touches none of Blender's data."""
+
+    def __init__(self, settings: OPAL_OT_gem_report, stone: Any, title: str) -> None:
+        super().__init__(name="Opal gem report", daemon=True)
+        self._stone, self.title = stone, title
+        self._size, self._passes = settings.size, settings.passes
+        self._head = 0.5 * settings.head_angle
+        self._tilt, self._tilt_steps = math.degrees(settings.tilt), settings.tilt_steps
+        self.stopping = False
+        self.done = 0.0
+        self.result: Any = None
+        self.page: Any = None
+        self.table = ""
+        self.sentence = ""
+
+    def _part(self, start: float, end: float) -> Any:
+        def told(done: float) -> bool:
+            self.done = start + (end - start) * done
+            return not self.stopping
+
+        return told
+
+    def run(self) -> None:
+        import numpy as np
+        from opal_kernels import gem_report
+        from opal_kernels.binding import OpalError
+
+        try:
+            tilts = np.linspace(-self._tilt, self._tilt, self._tilt_steps)
+            self.result = gem_report.measure(self._stone, tilts, self._head, progress=self._part(0.0, 0.3))
+            picture = gem_report.face_up(self._stone, self._size, self._passes, self._head, self._part(0.3, 0.65))
+            fire = gem_report.flashes(self._stone, self._size, self._passes, self._head, self._part(0.65, 1.0))
+            self.table = gem_report.table(self.result, self.title)
+            self.page = gem_report.draw(self.result, picture, fire, self.title)
+        except gem_report.Cancelled:
+            pass
+        except (OpalError, ValueError, MemoryError) as error:
+            self.sentence = str(error) or "There is not enough memory for the report."
+
+
+def _draw_menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
+    self.layout.operator(OPAL_OT_gem_report.bl_idname)
+
+
+def register() -> None:
+    bpy.utils.register_class(OPAL_OT_gem_report)
+    bpy.types.VIEW3D_MT_object.append(_draw_menu)
+
+
+def unregister() -> None:
+    bpy.types.VIEW3D_MT_object.remove(_draw_menu)
+    bpy.utils.unregister_class(OPAL_OT_gem_report)
