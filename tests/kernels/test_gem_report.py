@@ -97,6 +97,14 @@ def test_the_pictures_brightness_is_the_light_return():
     assert seen == pytest.approx(expected, abs=0.015), f"rendered {seen:.4f}, by rays {expected:.4f}"
 
 
+def test_a_ruby_returns_what_its_picture_shows():
+    """By three wavelengths beside the tracer's many: within 0.02 of white."""
+    stone = brilliant(name="RUBY", absorption=0.3 * species.absorption("RUBY", wavelengths()))
+    picture = gem_report.face_up(stone, size=64, passes=4)
+    seen = (picture[..., :3] @ [0.2126729, 0.7151522, 0.0721750]).sum() / picture[..., 3].sum()
+    assert seen == pytest.approx(gem_report.measure(stone, tilts=[0]).face_up.light_return, abs=0.02)
+
+
 def test_a_stone_that_is_open_or_turned_inside_out_is_refused_with_a_sentence():
     stone = brilliant()
     with pytest.raises(ValueError, match="open"):

@@ -29,6 +29,9 @@ HEAD_ANGLE = math.radians(15.0)
 _FISH_EYE, _NAIL_HEAD = 0.01, 0.5
 # Facets inside by which the girdle's image under the table is looked for; beyond, it is broken up.
 _FISH_EYE_FACETS = 3
+# Wavelengths (nm) and weights by which a coloured stone's shares are averaged: Gauss and Hermite's rule of three for the luminance of
+# white light, whose distribution has its mean at 558 nm and a deviation of 43 nm. A clear stone's shares are those of the D line.
+_LUMINANCE = ((484.0, 1 / 6), (558.0, 2 / 3), (632.0, 1 / 6))
 # The middle of the table, in table radii.
 _MIDDLE = 0.5
 
@@ -68,7 +71,7 @@ class Report:
     Attributes
     ----------
     face_up : Shares
-        At the D line, face-up.
+        Of white light, face-up.
     glare : float
         The part of `face_up.light_return` that is a reflection off the outside.
     fire : float
@@ -117,9 +120,9 @@ def _tilted(degrees: float) -> tuple[np.ndarray, np.ndarray]:
     return -zenith, zenith
 
 
-def _shares(exits: Exits, zenith: np.ndarray, head: float, rays: np.ndarray | None = None) -> tuple[Shares, float]:
-    """Shares over the rays that meet the stone (or a choice of them), and the glare."""
-    rays = exits.hit if rays is None else rays
+def _shares(exits: Exits, zenith: np.ndarray, head: float) -> tuple[Shares, float]:
+    """Shares over the rays that meet the stone, and the glare."""
+    rays = exits.hit
     if not rays.any():
         return Shares(0.0, 0.0, 0.0, 0.0), 0.0
     weight = exits.weight[:, rays]
@@ -130,6 +133,18 @@ def _shares(exits: Exits, zenith: np.ndarray, head: float, rays: np.ndarray | No
     returned = weight * (is_sky & ~is_head)
     ends = (returned.sum(), weight[is_head].sum(), weight[~is_sky].sum(), absorbed)
     return Shares(*(float(end / total) for end in ends)), float(returned[0].sum() / total)
+
+
+def _white_shares(rays: StoneRays, at_d: Exits | None, origins: np.ndarray, tilt: float, head: float) -> tuple[Shares, float]:
+    """Shares and glare of white light; `at_d` saves the clear stone's rays where they are known."""
+    towards, zenith = _tilted(tilt)
+    if rays.stone.absorption is None:
+        return _shares(at_d or rays.look(origins, towards, LINE_D), zenith, head)
+    ends = np.zeros(5)
+    for nm, weight in _LUMINANCE:
+        s, glare = _shares(rays.look(origins, towards, nm), zenith, head)
+        ends += weight * np.array([s.light_return, s.head, s.leakage, s.absorbed, glare])
+    return Shares(*(float(end) for end in ends[:4])), float(ends[4])
 
 
 def _fire(stone: FacetedStone, red: Exits, violet: Exits, zenith: np.ndarray) -> float:
@@ -208,16 +223,16 @@ def measure(
         towards, zenith = _tilted(0.0)
         origins, places = _eye_rays(towards, side)
         at_d = rays.look(origins, towards, LINE_D)
+        shares, glare = _white_shares(rays, at_d, origins, 0.0, head)
         told(1)
         red, violet = rays.look(origins, towards, LINE_B), rays.look(origins, towards, LINE_G)
         told(3)
         curve = []
         for number, tilt in enumerate(tilts):
-            direction, up = _tilted(float(tilt))
-            curve.append(_shares(rays.look(_eye_rays(direction, side // 2)[0], direction, LINE_D), up, head)[0])
+            seen = _eye_rays(_tilted(float(tilt))[0], side // 2)[0]
+            curve.append(_white_shares(rays, None, seen, float(tilt), head)[0])
             told(4 + number)
     through_table = at_d.hit & stone.is_table[at_d.triangle[0]] & (at_d.triangle[0] >= 0)
-    shares, glare = _shares(at_d, zenith, head)
     return Report(
         face_up=shares,
         glare=glare,
