@@ -13,11 +13,12 @@ from typing import Any
 import numpy as np
 from opal_kernels import denoise, memory
 from opal_kernels.binding import Cancelled, OpalError
-from opal_kernels.descriptions import Pass, RenderSettings
+from opal_kernels.descriptions import Carry, Pass, RenderSettings
 from opal_kernels.render import Render
 from opal_kernels.scene import Scene
 
-from . import report, settings, spectral_exr
+from . import capture as captures
+from . import film_files, report, settings, spectral_exr
 from .render_passes import RenderPass, wanted
 from .translate.camera import camera_from_object
 from .translate.scene_builder import SceneBuilder, Stopped
@@ -40,6 +41,8 @@ def render(engine: Any, depsgraph: Any) -> None:
         return
     except (OpalError, ValueError, MemoryError) as error:
         sentence = str(error) or "There is not enough memory to render this scene."
+        if (capture := captures.current()) is not None:
+            capture.failure = sentence
         engine.report({"ERROR"}, sentence)
         engine.error_set(sentence)
         return
@@ -57,6 +60,7 @@ class _FinalRender:
         self.frame = settings.frame_of(self.scene.render)
         self.passes: list[RenderPass] = [] if engine.is_preview else wanted(depsgraph.view_layer)
         self.denoise = self.scene.opal.denoise and not engine.is_preview
+        self.capture = None if engine.is_preview else captures.current()
         self.settings = self._settings()
         self.last_shown = self.last_stage = -np.inf
 
@@ -64,7 +68,12 @@ class _FinalRender:
         kept: list[Pass] = [row.source for row in self.passes]
         if self.denoise:
             kept += [Pass.ALBEDO, Pass.NORMAL]
-        return settings.render_settings(self.scene, self.frame, sorted(set(kept)), self.engine.is_preview)
+        if self.capture is not None:
+            kept += self.capture.passes
+        result = settings.render_settings(self.scene, self.frame, sorted(set(kept)), self.engine.is_preview)
+        if any(number >= Pass.LAYER_BASE for number in kept) and result.photons_carry != Carry.NONE:
+            result.photons_carry = Carry.CAUSTICS  # photons that bring ordinary light would not know its layer
+        return result
 
     def run(self) -> None:
         self._refuse_what_does_not_fit()
@@ -75,8 +84,12 @@ class _FinalRender:
             try:
                 cancelled = not self._run_passes(render, result)
                 self._write_everything(render, result)
+                if self.capture is not None and render.passes_done:
+                    self.capture.take(self.layer.name, render)
+                    self.capture.stopped |= cancelled
                 if not cancelled:
                     self._write_spectrum(render)
+                    self._write_film(render)
             finally:
                 self.engine.end_result(result, cancel=False, do_merge_results=False)
 
@@ -149,8 +162,9 @@ class _FinalRender:
         if self.engine.is_preview:
             total, time_limit, threshold = settings.PREVIEW_PASSES, settings.PREVIEW_SECONDS, 0.0
         begun = time.monotonic()
+        first = 0 if self.engine.is_preview else opal.pass_first - 1
         for number in range(total):
-            if not self._run_pass(render, number, total, begun):
+            if not self._run_pass(render, first, number, total, begun):
                 return False
             now = time.monotonic()
             if number + 1 < total and now - self.last_shown > _SHOW_SECONDS:
@@ -161,12 +175,12 @@ class _FinalRender:
                 break
         return True
 
-    def _run_pass(self, render: Render, number: int, total: int, begun: float) -> bool:
+    def _run_pass(self, render: Render, first: int, number: int, total: int, begun: float) -> bool:
         failures: list[BaseException] = []
 
         def work() -> None:
             try:
-                render.run_pass(number)
+                render.run_pass(first + number)
             except BaseException as error:
                 failures.append(error)
 
@@ -222,6 +236,18 @@ class _FinalRender:
         except OpalError as error:
             self.report.add("", f"The picture is not denoised: {error}")
             return combined
+
+    def _write_film(self, render: Render) -> None:
+        opal = self.scene.opal
+        if not opal.use_film_file or self.engine.is_preview:
+            return
+        sums = render.sums()
+        sums.info = film_files.info_of(self.depsgraph.scene.name, self.scene, self.layer.name, self.settings)
+        path = film_files.path_of(self.scene, self.layer.name, sums.passes)
+        try:
+            sums.save(path)
+        except OpalError as error:
+            self.report.add("", str(error))
 
     def _write_spectrum(self, render: Render) -> None:
         if not self.settings.spectral_bins:

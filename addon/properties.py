@@ -17,7 +17,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import gem_properties, media_properties, rainbow_properties
+from . import gem_properties, media_properties, rainbow_properties, twin_updates
 
 
 class OpalSceneProperties(bpy.types.PropertyGroup):
@@ -162,6 +162,30 @@ class OpalSceneProperties(bpy.types.PropertyGroup):
         default=0,
         min=0,
     )
+    seed_per_frame: BoolProperty(
+        name="Vary Seed",
+        description="Every frame gets noise and photons of its own, derived from the seed; off, noise stands still in an animation",
+        default=False,
+    )
+    pass_first: IntProperty(
+        name="First Pass",
+        description="Number of the first pass to render: passes 9 to 16 are rendered with First Pass 9 and 8 passes. Machines that "
+        "render different passes of one picture are merged by opal.merge",
+        default=1,
+        min=1,
+        max=1_000_000,
+    )
+    use_film_file: BoolProperty(
+        name="Film File",
+        description="Writes the film's exact sums beside the picture, to be merged with other passes of the same picture",
+        default=False,
+    )
+    film_path: StringProperty(
+        name="File",
+        description="Where the film is written; # stands for a digit of the frame number. The passes are added to the name",
+        default="//film_####.npz",
+        subtype="FILE_PATH",
+    )
     time_limit: FloatProperty(
         name="Time Limit",
         description="After how many seconds the render ends with the pass then running; 0 sets no limit",
@@ -296,7 +320,13 @@ _OWNERS = (
 )
 
 
+# What a twin shows (twins/): every setting of these updates it.
+_SHOWN = (*gem_properties.CLASSES, *media_properties.CLASSES, OpalMaterialProperties)
+
+
 def register() -> None:
+    for cls in _SHOWN:
+        twin_updates.attach(cls)
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     for owner, group in _OWNERS:

@@ -46,6 +46,14 @@ def frame_of(render: Any) -> Frame:
     return Frame(width, height, region)
 
 
+def frame_seed(seed: int, frame: int) -> int:
+    """A seed of its own for each frame: 32 bits mixed from both (the finaliser of MurmurHash3)."""
+    h = (seed * 0x9E3779B1 + frame) & 0xFFFFFFFF
+    for shift, factor in ((16, 0x85EBCA6B), (13, 0xC2B2AE35)):
+        h = ((h ^ (h >> shift)) * factor) & 0xFFFFFFFF
+    return h ^ (h >> 16)
+
+
 def threads_of(render: Any) -> int:
     """Threads to use; 0 takes every core."""
     return render.threads if render.threads_mode == "FIXED" else 0
@@ -88,7 +96,7 @@ def render_settings(scene: Any, frame: Frame, passes: Sequence[Pass] = (), previ
         transparent_depth=opal.transparent_depth,
         wavelength_first=first,
         wavelength_last=max(last, first + 1.0),
-        seed=opal.seed,
+        seed=frame_seed(opal.seed, scene.frame_current) if opal.seed_per_frame and not preview else opal.seed,
         filter=Filter[opal.pixel_filter],
         filter_width=opal.filter_width,
         exposure=opal.film_exposure,

@@ -43,13 +43,14 @@ def output_path(scene: Any, layer: str) -> Path:
 def unavailable() -> str:
     """Why no spectral file can be written here, in one sentence; empty where it can."""
     try:
-        _image_io()
+        image_io()
     except OpalError as error:
         return str(error)
     return ""
 
 
-def _image_io() -> Any:
+def image_io(what: str = "Spectral files") -> Any:
+    """Blender's OpenImageIO module; OpalError where this build has none."""
     try:
         import OpenImageIO
     except ImportError:
@@ -57,7 +58,7 @@ def _image_io() -> Any:
         try:
             import OpenImageIO
         except ImportError:
-            raise OpalError("Spectral files cannot be written: this build of Blender has no OpenImageIO module.") from None
+            raise OpalError(f"{what} cannot be written: this build of Blender has no OpenImageIO module.") from None
     return OpenImageIO
 
 
@@ -80,7 +81,7 @@ def write(path: Path, spectra: np.ndarray, rgb: np.ndarray, wavelengths: Sequenc
     OpalError
         If there is no OpenImageIO, or the file cannot be written.
     """
-    oiio = _image_io()
+    oiio = image_io()
     height, width, bins = spectra.shape
     spec = oiio.ImageSpec(width, height, 3 + bins, "float")
     spec.channelnames = ("R", "G", "B", *map(channel_name, wavelengths))

@@ -3,9 +3,19 @@
 
 from __future__ import annotations
 
-from . import add_gem, add_rain, gem_report, import_absorption, import_gemcad, rainbow_chart
+from . import (
+    add_gem,
+    add_rain,
+    composite,
+    gem_report,
+    import_absorption,
+    import_gemcad,
+    rainbow_chart,
+    render_layers,
+    update_twins,
+)
 
-_MODULES = (add_gem, import_gemcad, import_absorption, gem_report, add_rain, rainbow_chart)
+_MODULES = (add_gem, import_gemcad, import_absorption, gem_report, add_rain, rainbow_chart, render_layers, composite, update_twins)
 
 
 def register() -> None:

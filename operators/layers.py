@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Opal's layers as pictures, and how they lie over a base.
+
+    composite = base x transmittance + caustics + gems + media + rainbow
+
+in scene-linear and premultiplied: added light, replaced pixels (the base has a hole there) and attenuation. The layers are films of
+one render (`opal_kernels.descriptions.Pass.LAYER_*`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import Any
+
+import numpy as np
+
+# Identifier, name, description; those that are added to the base carry their pass's name.
+ADDED = ("CAUSTICS", "GEMS", "MEDIA", "RAINBOW")
+ITEMS = (
+    ("CAUSTICS", "Caustics", "Light that gems, glass and mirrors throw on ordinary surfaces, and light that media throw there"),
+    ("GEMS", "Gems", "Gems and what is seen through them, with the alpha of what they cover"),
+    ("MEDIA", "Media", "What media scatter or give off towards the camera"),
+    ("RAINBOW", "Rainbow", "What rain sends to the camera"),
+    ("TRANSMITTANCE", "Transmittance", "What media and rain let through of what lies behind them; multiplies the base"),
+    ("FULL", "Full Picture", "The whole of Opal's render"),
+)
+LABELS = {identifier: name for identifier, name, _ in ITEMS}
+
+
+def passes(chosen: Collection[str]) -> list[Any]:
+    """The films that the chosen layers need, beside Combined."""
+    from opal_kernels.descriptions import Pass
+
+    kept = [Pass[f"LAYER_{name}"] for name in ADDED if name in chosen]
+    return kept + ([Pass.LAYER_BASE, Pass.LAYER_BEHIND] if "TRANSMITTANCE" in chosen else [])
+
+
+def pictures(films: Mapping[Any, np.ndarray], chosen: Collection[str]) -> dict[str, np.ndarray]:
+    """The chosen layers by identifier, (height, width, 4) float32, premultiplied; the transmittance is no light."""
+    from opal_kernels.descriptions import Pass
+
+    found = {name: films[Pass[f"LAYER_{name}"]] for name in ADDED if name in chosen}
+    if "TRANSMITTANCE" in chosen:
+        found["TRANSMITTANCE"] = transmittance(films[Pass.LAYER_BASE], films[Pass.LAYER_BEHIND])
+    if "FULL" in chosen:
+        found["FULL"] = films[Pass.COMBINED]
+    return found
+
+
+def transmittance(dimmed: np.ndarray, behind: np.ndarray) -> np.ndarray:
+    """What media let through, pixel by pixel: the base with them over the base without, both from the same paths.
+
+    The quotient has the noise of neither, and where things at several depths share a pixel it weighs them by the light they send.
+    Where no light lies behind, alpha says how many paths came through; where none did, nothing does.
+    """
+    share = np.divide(dimmed[..., 3:], behind[..., 3:], out=np.zeros_like(dimmed[..., 3:]), where=behind[..., 3:] > 0)
+    some = behind > 1e-6 * np.maximum(behind.max(axis=2, keepdims=True), 1e-6)
+    result = np.where(some, np.divide(dimmed, behind, out=np.zeros_like(dimmed), where=some), share)
+    return np.clip(result, 0.0, 1.0).astype(np.float32)
+
+
+def composite(base: np.ndarray, layers: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Lays layers over a base; alpha is at most 1."""
+    result = base.astype(np.float32, copy=True)
+    if "TRANSMITTANCE" in layers:
+        result *= layers["TRANSMITTANCE"]
+    for name in ADDED:
+        if name in layers:
+            result += layers[name]
+    result[..., 3] = np.clip(result[..., 3], 0.0, 1.0)
+    return result

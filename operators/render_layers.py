@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Renders Opal's layers of the current frame into float images and, by choice, into a multilayer OpenEXR file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, EnumProperty, StringProperty
+
+from . import float_images, layers, render_scene
+
+
+def image_name(identifier: str) -> str:
+    """The image that holds a layer."""
+    return f"Opal {layers.LABELS[identifier]}"
+
+
+class WritesFile:
+    """What operators that write a multilayer file share."""
+
+    use_file: BoolProperty(
+        name="Multilayer EXR",
+        description="Also write the pictures as layers of one OpenEXR file",
+        default=False,
+    )
+    filepath: StringProperty(
+        name="File",
+        description="Where the multilayer file is written; # stands for a digit of the frame number",
+        default="//opal_layers_####.exr",
+        subtype="FILE_PATH",
+    )
+
+    def write(self, context: Any, pictures: dict[str, np.ndarray]) -> str:
+        """Writes the file if asked to; returns what to tell, and raises OpalError where it cannot."""
+        if not self.use_file:
+            return ""
+        from ..addon.film_files import with_frame
+
+        if self.filepath.startswith("//") and not bpy.data.filepath:
+            from opal_kernels.binding import OpalError
+
+            raise OpalError(f"Save the file first: “{self.filepath}” is relative to it.")
+        path = with_frame(self.filepath, context.scene.frame_current)
+        path = Path(path if path.lower().endswith(".exr") else path + ".exr")
+        if path.exists() and not context.scene.render.use_overwrite:
+            return f"; {path.name} exists and is kept, because Overwrite is off"
+        float_images.write_layers(path, {context.view_layer.name: pictures})
+        return f"; written to {path}"
+
+
+class OPAL_OT_render_layers(bpy.types.Operator, WritesFile):
+    """Render Opal's layers"""
+
+    bl_idname = "opal.render_layers"
+    bl_label = "Render Layers"
+    bl_description = "Render Opal's layers of this frame into images, to be laid over a picture by another engine"
+    bl_options = {"REGISTER"}
+
+    layers: EnumProperty(
+        name="Layers",
+        description="Which layers are rendered",
+        items=layers.ITEMS,
+        options={"ENUM_FLAG"},
+        default={"CAUSTICS", "GEMS", "MEDIA", "RAINBOW", "TRANSMITTANCE"},
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return context.scene is not None and not bpy.app.is_job_running("RENDER")
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        from opal_kernels.binding import OpalError
+
+        if not self.layers:
+            self.report({"ERROR"}, "No layer is chosen.")
+            return {"CANCELLED"}
+        try:
+            rendered = render_scene.opal(context, layers.passes(self.layers))
+            found = layers.pictures(rendered.films, self.layers)
+            for identifier, pixels in found.items():
+                float_images.put(image_name(identifier), pixels)
+            told = self.write(context, {layers.LABELS[name].replace(" ", ""): pixels for name, pixels in found.items()})
+        except (render_scene.RenderFailed, OpalError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        self.report({"INFO"}, f"{len(found)} layers in {rendered.seconds:.1f} s" + told)
+        return {"FINISHED"}
+
+
+def register() -> None:
+    bpy.utils.register_class(OPAL_OT_render_layers)
+
+
+def unregister() -> None:
+    bpy.utils.unregister_class(OPAL_OT_render_layers)

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Opal's layers over a Cycles render make the picture that Opal renders alone."""
+
+import layer_stage
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy")
+import stage  # noqa: E402
+
+pytestmark = pytest.mark.usefixtures("opal")
+
+
+def both(**settings):
+    """The composite, and Opal's own picture: of the same seed, so that the noise of gems and fog is in both and cancels."""
+    assert bpy.ops.opal.composite(**settings) == {"FINISHED"}
+    composite = layer_stage.pixels("Opal Composite")
+    assert bpy.ops.opal.render_layers(layers={"FULL"}) == {"FINISHED"}
+    return composite, layer_stage.pixels("Opal Full Picture")
+
+
+@pytest.mark.parametrize("attenuation", ["LAYER", "BASE"])
+def test_the_composite_is_the_full_render_within_noise(attenuation):
+    """Means over sixteenths of the picture, of which what Cycles and Opal each make of the base is the noise: some 0.2 %."""
+    layer_stage.build(passes=12)
+    composite, full = both(attenuation=attenuation)
+    ratio = layer_stage.blocks(composite)[..., :3] / layer_stage.blocks(full)[..., :3]
+    np.testing.assert_allclose(ratio, 1.0, atol=0.008, err_msg=str(np.round(ratio[..., 1], 3)))
+    assert composite[..., :3].mean() == pytest.approx(full[..., :3].mean(), rel=0.004)
+    np.testing.assert_allclose(composite[..., 3], 1.0, atol=0.1)
+
+
+def test_with_a_transparent_film_alpha_is_the_full_renders():
+    scene = layer_stage.build(passes=8)
+    scene.render.film_transparent = True
+    composite, full = both(samples=32)
+    np.testing.assert_allclose(layer_stage.blocks(composite)[..., 3], layer_stage.blocks(full)[..., 3], atol=0.01)
+    assert full[-1, 0, 3] == composite[-1, 0, 3] == 0
+
+
+def test_an_object_that_cuts_the_film_cuts_both():
+    scene = layer_stage.build(passes=4)
+    scene.render.film_transparent = True
+    bpy.data.objects["Cube"].is_holdout = True
+    composite, full = both(samples=32)
+    np.testing.assert_allclose(layer_stage.blocks(composite, 8)[..., 3], layer_stage.blocks(full, 8)[..., 3], atol=0.02)
+
+
+def test_nothing_of_the_scene_is_changed_by_it():
+    scene = layer_stage.build(passes=1)
+    materials = list(bpy.data.materials)
+    before = [[(node.name, node.bl_idname, getattr(node, "is_active_output", None)) for node in m.node_tree.nodes] for m in materials]
+    settings = (scene.render.engine, scene.render.filepath, scene.cycles.caustics_reflective, scene.cycles.max_bounces)
+    assert bpy.ops.opal.composite(samples=1, use_nodes=False) == {"FINISHED"}
+    after = [[(node.name, node.bl_idname, getattr(node, "is_active_output", None)) for node in m.node_tree.nodes] for m in materials]
+    assert after == before
+    assert (scene.render.engine, scene.render.filepath, scene.cycles.caustics_reflective, scene.cycles.max_bounces) == settings
+
+
+def test_the_compositors_nodes_give_the_same_picture(tmp_path):
+    scene = layer_stage.build(passes=2)
+    assert bpy.ops.opal.composite(samples=4) == {"FINISHED"}
+    group = bpy.data.node_groups["Opal Composite"]
+    assert {"Attenuation", "Caustics Exposure", "Gems Exposure", "Media Exposure"} <= {node.name for node in group.nodes}
+    expected = layer_stage.pixels("Opal Composite")
+    scene.opal.passes = scene.opal.samples_per_pass = 1
+    scene.opal.photons_per_pass = 0
+    np.testing.assert_allclose(rendered(scene, tmp_path), expected, atol=2e-3, rtol=2e-3)
+    group.nodes["Media Exposure"].inputs["Exposure"].default_value = 1.0
+    twice = expected + layer_stage.pixels("Opal Media") * (1, 1, 1, 0)
+    np.testing.assert_allclose(rendered(scene, tmp_path), twice, atol=2e-3, rtol=2e-3)
+
+
+def rendered(scene, folder):
+    """What the compositor makes of the scene."""
+    scene.render.use_compositing = True
+    image_settings = scene.render.image_settings
+    if hasattr(image_settings, "media_type"):
+        image_settings.media_type = "IMAGE"
+    image_settings.file_format, image_settings.color_mode, image_settings.color_depth = "OPEN_EXR", "RGBA", "32"
+    scene.render.filepath = str(folder / "composited.exr")
+    bpy.ops.render.render(write_still=True)
+    image = bpy.data.images.load(scene.render.filepath, check_existing=False)
+    image.name = "Composited"
+    try:
+        return layer_stage.pixels("Composited")
+    finally:
+        bpy.data.images.remove(image)
+
+
+def test_an_artists_compositor_is_left_alone():
+    scene = layer_stage.build(passes=1, width=8, height=6)
+    if bpy.app.version >= (5, 0, 0):
+        own = scene.compositing_node_group = bpy.data.node_groups.new("Mine", "CompositorNodeTree")
+        bpy.ops.opal.composite(samples=1)
+        assert scene.compositing_node_group == own
+    else:
+        scene.use_nodes = True
+        blur = scene.node_tree.nodes.new("CompositorNodeBlur")
+        output = next(n for n in scene.node_tree.nodes if n.bl_idname == "CompositorNodeComposite")
+        scene.node_tree.links.new(blur.outputs[0], output.inputs[0])
+        bpy.ops.opal.composite(samples=1)
+        assert output.inputs[0].links[0].from_node == blur
+    assert "Opal Composite" in bpy.data.node_groups
+
+
+def test_layers_are_written_as_a_multilayer_file(tmp_path):
+    layer_stage.build(passes=1, width=16, height=12)
+    path = tmp_path / "new folder" / "layers_####.exr"
+    assert bpy.ops.opal.render_layers(use_file=True, filepath=str(path)) == {"FINISHED"}
+    (written,) = stage.read_layers(path.with_name("layers_0001.exr")).values()
+    assert set(written) == {"Caustics", "Gems", "Media", "Rainbow", "Transmittance"}
+    np.testing.assert_allclose(written["Gems"], layer_stage.pixels("Opal Gems"), rtol=1e-6)
+
+
+def test_a_file_that_cannot_be_written_is_a_sentence(tmp_path):
+    layer_stage.build(passes=1, width=8, height=6)
+    blocked = tmp_path / "file"
+    blocked.write_text("not a folder")
+    with pytest.raises(RuntimeError, match="cannot be written"):
+        bpy.ops.opal.render_layers(use_file=True, filepath=str(blocked / "layers.exr"))
+    with pytest.raises(RuntimeError, match="Save the file first"):
+        bpy.ops.opal.render_layers(use_file=True)
+
+
+def test_a_strangers_image_of_the_same_name_is_left_alone():
+    layer_stage.build(passes=1, width=8, height=6)
+    mine = bpy.data.images.new("Opal Gems", 3, 3)
+    for _ in range(2):
+        assert bpy.ops.opal.render_layers(layers={"GEMS"}) == {"FINISHED"}
+    assert tuple(mine.size) == (3, 3)
+    made = [image for image in bpy.data.images if image.get("opal_picture")]
+    assert len(made) == 1 and tuple(made[0].size) == (8, 6)
+
+
+def test_the_chosen_view_layer_of_the_chosen_scene_is_rendered():
+    scene = layer_stage.build(passes=1, width=8, height=6)
+    scene.view_layers.new("Second").use = False
+    other = bpy.data.scenes.new("Other")
+    assert bpy.ops.opal.render_layers(layers={"FULL"}) == {"FINISHED"}
+    assert [layer.use for layer in scene.view_layers] == [True, False]
+    with bpy.context.temp_override(scene=other, view_layer=other.view_layers[0]):
+        with pytest.raises(RuntimeError, match="camera"):
+            bpy.ops.opal.render_layers(layers={"FULL"})
+    assert scene.view_layers[0].use
+
+
+def test_a_gpu_that_is_not_there_gives_way_to_the_processor():
+    scene = layer_stage.build(passes=1, width=8, height=6)
+    scene.cycles.device = "GPU"
+    assert bpy.ops.opal.composite(samples=1) == {"FINISHED"}
+    assert scene.cycles.device == "GPU"
