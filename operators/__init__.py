@@ -6,6 +6,7 @@ from __future__ import annotations
 from . import (
     add_gem,
     add_rain,
+    compare_cycles,
     composite,
     gem_report,
     import_absorption,
@@ -15,7 +16,18 @@ from . import (
     update_twins,
 )
 
-_MODULES = (add_gem, import_gemcad, import_absorption, gem_report, add_rain, rainbow_chart, render_layers, composite, update_twins)
+_MODULES = (
+    add_gem,
+    import_gemcad,
+    import_absorption,
+    gem_report,
+    add_rain,
+    rainbow_chart,
+    render_layers,
+    composite,
+    compare_cycles,
+    update_twins,
+)
 
 
 def register() -> None:

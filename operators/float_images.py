@@ -102,3 +102,27 @@ def write_layers(path: Path, layers: Mapping[str, Mapping[str, np.ndarray]]) -> 
         raise OpalError(f"The file {path} cannot be written: {error.strerror or error}.") from error
     finally:
         partial.unlink(missing_ok=True) if partial.parent.is_dir() else None
+
+
+def write_png(path: Path, pixels: np.ndarray) -> None:
+    """Writes display values, (height, width, 4), rows from the bottom up, as a PNG of 8 bits.
+
+    Raises
+    ------
+    OpalError
+        If it cannot be written.
+    """
+    from opal_kernels.binding import OpalError
+
+    height, width, _ = pixels.shape
+    image = bpy.data.images.new("Opal file", width, height, alpha=False)
+    try:
+        whole = np.ones((height, width, 4), np.float32)
+        whole[..., :3] = pixels[..., :3]
+        image.pixels.foreach_set(whole.reshape(-1))
+        image.filepath_raw, image.file_format = str(path), "PNG"
+        image.save()
+    except RuntimeError as error:
+        raise OpalError(f"The picture {path} cannot be written: {str(error).strip().splitlines()[-1]}") from None
+    finally:
+        bpy.data.images.remove(image)
