@@ -11,6 +11,7 @@ from . import (
     gem_report,
     import_absorption,
     import_gemcad,
+    merge,
     rainbow_chart,
     render_layers,
     update_twins,
@@ -26,6 +27,7 @@ _MODULES = (
     render_layers,
     composite,
     compare_cycles,
+    merge,
     update_twins,
 )
 
