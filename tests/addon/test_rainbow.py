@@ -24,7 +24,7 @@ def sun(height=SUN_HEIGHT, azimuth=math.pi, energy=4.0):
     return obj
 
 
-def looking(azimuth=0.0, height=math.radians(12.0), lens=18.0):
+def looking(azimuth=0.0, height=0.2094, lens=18.0):
     return stage.camera((0, 0, 2), (math.pi / 2 + height, 0.0, -azimuth), lens=lens, clip_end=1e5)
 
 
