@@ -14,9 +14,10 @@ from . import (
     properties,
     rainbow_panels,
     report,
+    versions,
 )
 
-_MODULES = (properties, light_properties, engine, panels, material_panels, media_panels, rainbow_panels, light_panels, blender_panels)
+_MODULES = (properties, light_properties, engine, panels, material_panels, media_panels, rainbow_panels, light_panels, blender_panels, versions)
 
 
 def register() -> None:

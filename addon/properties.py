@@ -185,6 +185,7 @@ class OpalSceneProperties(bpy.types.PropertyGroup):
         description="Where the film is written; # stands for a digit of the frame number. The passes are added to the name",
         default="//film_####.npz",
         subtype="FILE_PATH",
+        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
     time_limit: FloatProperty(
         name="Time Limit",
@@ -253,6 +254,7 @@ class OpalSceneProperties(bpy.types.PropertyGroup):
         description="Where the spectral file is written; # stands for a digit of the frame number",
         default="//spectral_####.exr",
         subtype="FILE_PATH",
+        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
     spectral_bins: IntProperty(
         name="Bins",

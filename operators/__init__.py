@@ -12,6 +12,7 @@ from . import (
     import_absorption,
     import_gemcad,
     merge,
+    panels,
     rainbow_chart,
     render_layers,
     update_twins,
@@ -29,6 +30,7 @@ _MODULES = (
     compare_cycles,
     merge,
     update_twins,
+    panels,
 )
 
 

@@ -60,6 +60,7 @@ class OPAL_OT_compare_cycles(bpy.types.Operator):
         description="Beginning of the files' names; # stands for a digit of the frame number",
         default="//opal_comparison_####",
         subtype="FILE_PATH",
+        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
 
     @classmethod

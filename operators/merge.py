@@ -40,12 +40,14 @@ class OPAL_OT_merge(bpy.types.Operator, ImportHelper):
         "number. Empty makes an image in this file only",
         default="",
         subtype="FILE_PATH",
+        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
     film: StringProperty(
         name="Film",
         description="Where the merged film is written, to be merged further; empty writes none",
         default="",
         subtype="FILE_PATH",
+        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
     use_denoise: BoolProperty(
         name="Denoise",

@@ -31,6 +31,7 @@ class WritesFile:
         description="Where the multilayer file is written; # stands for a digit of the frame number",
         default="//opal_layers_####.exr",
         subtype="FILE_PATH",
+        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
 
     def write(self, context: Any, pictures: dict[str, np.ndarray]) -> str:

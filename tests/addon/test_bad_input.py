@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Input that is broken or absurd ends in a picture or in one sentence, never in a crash or a hang."""
 
+import threading
+
 import numpy as np
 import pytest
 
@@ -191,3 +193,29 @@ def test_a_gem_of_an_impossible_index_written_by_a_script_still_renders(tmp_path
     bpy.ops.mesh.primitive_uv_sphere_add()
     bpy.context.object.data.materials.append(material)
     assert np.isfinite(stage.render(tmp_path)).all()
+
+
+def test_deleting_what_is_being_rendered_ends_in_a_picture(tmp_path):
+    """Objects and materials that go while passes run: the render has read them and needs them no more."""
+    scene = stage.scene(passes=4)
+    scene.opal.denoise = False
+    stage.camera((0, 0, 5))
+    material = stage.glowing()
+    plane = stage.plane(size=20, material=material)
+
+    def delete(*_):
+        if deleted or not any(thread.name == "Opal pass" for thread in threading.enumerate()):
+            return
+        deleted.add(plane.name)
+        bpy.data.objects.remove(plane)
+        bpy.data.materials.remove(material)
+
+    deleted = set()
+    bpy.app.handlers.render_stats.append(delete)
+    try:
+        picture = stage.render(tmp_path)
+    finally:
+        bpy.app.handlers.render_stats.remove(delete)
+    assert np.isfinite(picture).all()
+    assert deleted == {"Plane"} and "Plane" not in bpy.data.objects
+    assert not stage.render(tmp_path)[..., :3].any()
