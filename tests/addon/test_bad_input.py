@@ -197,7 +197,7 @@ def test_a_gem_of_an_impossible_index_written_by_a_script_still_renders(tmp_path
 
 def test_deleting_what_is_being_rendered_ends_in_a_picture(tmp_path):
     """Objects and materials that go while passes run: the render has read them and needs them no more."""
-    scene = stage.scene(passes=4)
+    scene = stage.scene(width=64, height=48, passes=6, samples=64)
     scene.opal.denoise = False
     stage.camera((0, 0, 5))
     material = stage.glowing()
