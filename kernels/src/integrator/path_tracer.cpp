@@ -58,6 +58,10 @@ class CameraPath {
     const float film_y = (float(y) + 0.5f + offset.y) / float(settings_.height);
     const float time = settings_.motion_blur ? sampler_.get1d(kDimTime) : 0.0f;
     alive_ = generate_ray(scene_.camera, film_x, film_y, sampler_.get2d(kDimLens), time, ray_);
+    // Media begin where the camera does: what lies before its near clipping is not there, as in Cycles.
+    ray_.origin += ray_.direction * ray_.t_min;
+    ray_.t_max -= ray_.t_min;
+    ray_.t_min = 0;
     media_ = pass.camera_media;
     ++counts_.camera;
   }
