@@ -97,9 +97,6 @@ class SceneBuilder:
         visible = collect(depsgraph, on_light, links.group)
         for (light, _), lamp in zip(snapshot.lights, originals, strict=True):
             light.receivers = links.receivers(lamp)
-        for name, sentence in visible.problems:
-            self._report.add(name, sentence)
-
         self._stage("Reading materials")
         self.rain.begin([light for light, _ in snapshot.lights])
         override = getattr(depsgraph.view_layer_eval, "world_override", None)  # since Blender 5
@@ -115,6 +112,9 @@ class SceneBuilder:
                 [self._materials.number(m, body if fills(m) or group.grids is not None else None) for m in group.materials or (None,)]
             )
             bodies.append(body)
+
+        for name, sentence in visible.problems:  # grids have been read by now
+            self._report.add(name, sentence)
 
         needs = self._context.mesh_needs()
         for count, group in enumerate(visible.groups):

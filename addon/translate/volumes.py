@@ -97,13 +97,18 @@ class Volumes:
             self._problem(name, f"{negative} voxels are negative and are taken as empty")
         return 1 + grid
 
+    def _missing(self, body: Body, name: str) -> None:
+        """Names a grid that is not there; one that could not be read has said so itself."""
+        if body.source is None or name not in body.source.names:
+            self._problem(body.name, f"There is no grid named “{name}”; it is rendered as nothing.")
+
     def _density(self, body: Body, name: str) -> int:
         """1 + number of a grid of the body with one channel; 0, with a sentence, where it has none of that name."""
         key = (body.source.key if body.source is not None else 0, name, False)
         if key not in self._grids:
             voxels = body.read(name)
             if voxels is None:
-                self._problem(body.name, f"There is no grid named “{name}”; it is rendered as nothing.")
+                self._missing(body, name)
                 self._grids[key] = 0
             else:
                 body.used.append(voxels)
@@ -237,7 +242,7 @@ class Volumes:
             grid = body.read(name)
             if grid is None:
                 if body.source is not None:
-                    self._problem(body.name, f"There is no grid named “{name}”; it is rendered as nothing.")
+                    self._missing(body, name)
                 continue
             values = grid.at(lattice).reshape(len(places), -1)
             known |= (values != 0).any(axis=1)
