@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from opal_kernels.charts import rainbow_data
 from opal_kernels.optics import colour, rainbow
 from opal_kernels.optics.rainbow import airy, airy_function, descartes, droplet, drops, geometric, sun, water
 
@@ -234,6 +235,26 @@ def test_the_traced_drop_agrees_with_mie_when_round(radius):
     peaks = [rows["theta_scat_deg"][bow][row[bow].argmax()] for row in (p.mean(axis=0), mie)]
     assert peaks[0] == pytest.approx(peaks[1], abs=0.0501)
     assert p[1, bow].mean() == pytest.approx(rows["p_par_mie"][bow].mean(), rel=0.05)
+
+
+@pytest.mark.parametrize(("theory", "radius", "shift"), [("DROPLET", 250.0, 0.05), ("DROPLET", 400.0, 0.05), ("AIRY", 300.0, 0.1)])
+def test_the_luminance_of_both_bows_and_the_band_between_is_mies(theory, radius, shift):
+    mie = rainbow_data.bow("MIE", radius, 0.05, 40.0, 0.04)
+    other = rainbow_data.bow(theory, radius, 0.05, 40.0, 0.04)
+    degree = np.ones(25) / 25
+    ratio = np.convolve(other.luminance, degree, "valid") / np.convolve(mie.luminance, degree, "valid")
+    assert np.abs(ratio - 1).max() < 0.1
+    for span in (rainbow_data._PRIMARY, rainbow_data._SECONDARY):
+        assert rainbow_data._top(other, span)[0] == pytest.approx(rainbow_data._top(mie, span)[0], abs=shift)
+
+
+@pytest.mark.parametrize("theory", ["AIRY", "DROPLET"])
+@pytest.mark.parametrize(("radius", "nm"), [(80.0, 500.0), (120.0, 620.0), (300.0, 450.0)])
+def test_alexanders_band_is_as_dark_as_mies(theory, radius, nm):
+    # The share of grazing waves was taken at 150 and 400 um, 550 nm; half a degree about the band's middle, where no bow reaches.
+    angles = np.radians(np.arange(132.5, 135.0, 0.05))
+    band = [rainbow.phase_function(t, radius, [nm], angles, 0.06, sizes=60, sun_radius_rad=0.01).mean() for t in (theory, "MIE")]
+    assert band[0] == pytest.approx(band[1], rel=0.1)
 
 
 def test_flattened_drops_lower_the_top_of_the_bow():

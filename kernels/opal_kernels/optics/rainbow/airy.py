@@ -123,6 +123,7 @@ class Drop:
 
         `sizes` are size parameters, `share` their part of the drops' cross-section (sum 1).
         """
-        bows = self._rays + self._airy(background.CENTRES, sizes, share)
+        bows = self._rays + self._airy(background.CENTRES, sizes, share) + background.edge(background.CENTRES, sizes, share)
         rest = self._rays + background.closed(self._densities, bows)
-        return background.at(angles_rad, rest) + self._airy(np.asarray(angles_rad, float), sizes, share)
+        grazing = background.edge(angles_rad, sizes, share)
+        return background.at(angles_rad, rest) + self._airy(np.asarray(angles_rad, float), sizes, share) + grazing

@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a drop does besides its two bows: reflection outside, light passed through, higher orders, and the diffraction lobe.
 
-The ray theories and Airy's add this to their bows, so that the dark band and the sky stand right beside them. (Beside Lorenz-Mie's the dark band comes
-out 7 per cent low at 300 um radius and 15 at 100; the cause has not been looked into.) Densities are per
+The ray theories and Airy's add this to their bows, so that the dark band and the sky stand right beside them. Densities are per
 unit of light on the drop (integral 1 over all orders for each polarisation), tabulated on `EDGES` and linear between centres.
+
+Rays alone leave the dark band too dark, by a fifth at 100 um radius. What is missing falls as x^(-2/3) (measured from 70 to 400 um
+radius), the law of waves that graze a drop: they enter at the critical angle, run on inside by nearly total reflections and leave on all
+sides (Nussenzveig, Diffraction Effects in Semiclassical Scattering, 1992, chapter 14). `edge` adds them, evenly over the angle, in
+an amount taken from Lorenz-Mie theory at 150 and 400 um; it is right on the mean and not in its detail, as its sources say.
 """
 
 from __future__ import annotations
@@ -19,6 +23,7 @@ HIGHEST_ORDER = 7
 EDGES = np.linspace(0, np.pi, 3601)  # 0.05 degrees
 CENTRES = (EDGES[1:] + EDGES[:-1]) / 2
 SOLID_ANGLES = 2 * np.pi * (np.cos(EDGES[:-1]) - np.cos(EDGES[1:]))
+_EDGE, _EDGE_FROM, _EDGE_TO = 0.27, np.radians(60), np.radians(141)  # a share of Q_ext's 2 x^(-2/3)
 _RAYS = {-1: 2000, 0: 2000, 1: 8000, 2: 8000}
 
 
@@ -57,6 +62,17 @@ def closed(densities: dict[int, np.ndarray], bows: np.ndarray) -> np.ndarray:
 def at(angles_rad: np.ndarray, density: np.ndarray) -> np.ndarray:
     """Return a density at scattering angles, (2, n)."""
     return np.array([np.interp(angles_rad, CENTRES, row) for row in density])
+
+
+def edge(angles_rad: np.ndarray, sizes: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Return what waves that graze the drops add, (n,), the same in both polarisations, units as the orders.
+
+    From the sides to the primary's edge; in the bright sky inside it they are lost among the rays.
+    """
+    angles = np.asarray(angles_rad, float)
+    amount = _EDGE * float((share * sizes ** (-2 / 3)).sum())
+    ramp = np.clip((angles - _EDGE_FROM) / np.radians(10), 0, 1) * np.clip((_EDGE_TO - angles) / np.radians(5), 0, 1)
+    return amount * ramp / (np.pi**2 * np.maximum(np.sin(angles), 0.2))
 
 
 def with_diffraction(angles_rad: np.ndarray, scattered: np.ndarray, sizes: np.ndarray, share: np.ndarray) -> np.ndarray:

@@ -300,5 +300,7 @@ class Drop:
 
         `sizes` are size parameters, `share` their part of the drops' cross-section (sum 1).
         """
-        rest = background.closed(self._densities, self._bows(background.CENTRES, sizes, share))
-        return background.at(angles_rad, rest) + self._bows(np.asarray(angles_rad, float), sizes, share)
+        bows = self._bows(background.CENTRES, sizes, share) + background.edge(background.CENTRES, sizes, share)
+        rest = background.closed(self._densities, bows)
+        grazing = background.edge(angles_rad, sizes, share)
+        return background.at(angles_rad, rest) + self._bows(np.asarray(angles_rad, float), sizes, share) + grazing
