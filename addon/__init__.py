@@ -17,7 +17,18 @@ from . import (
     versions,
 )
 
-_MODULES = (properties, light_properties, engine, panels, material_panels, media_panels, rainbow_panels, light_panels, blender_panels, versions)
+_MODULES = (
+    properties,
+    light_properties,
+    engine,
+    panels,
+    material_panels,
+    media_panels,
+    rainbow_panels,
+    light_panels,
+    blender_panels,
+    versions,
+)
 
 
 def register() -> None:

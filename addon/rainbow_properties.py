@@ -51,6 +51,7 @@ class OpalRainbowProperties(bpy.types.PropertyGroup):
             ("NORMAL", "Normal", "A bell curve"),
             ("LOG_NORMAL", "Log-Normal", "A bell curve of the logarithm, as sprays have"),
             ("GAMMA", "Gamma", "Many small and few large drops, as clouds and showers have"),
+            ("TWO_SIZES", "Two Sizes", "Drops of this radius and, with as much area, of 0.45 of it: flattened, they make a twinned bow"),
             ("MARSHALL_PALMER", "Marshall-Palmer", "Rain (1948): numbers fall exponentially with size, whatever the spread"),
         ),
         default="LOG_NORMAL",

@@ -87,12 +87,12 @@ def landscape(sun_height: float, target: tuple[float, float, float], lens: float
     scene = _scene.empty()
     fields(_scene.matte("Meadow", (0.20, 0.19, 0.055)))
     trees(_scene.matte("Leaves", (0.060, 0.090, 0.020)))
-    curtain(0.0032, **drops)
+    curtain(0.0034, **drops)
     sun(sun_height)
-    sky((0.125, 0.155, 0.20), (0.045, 0.060, 0.095), 0.8)
+    sky((0.075, 0.092, 0.125), (0.028, 0.036, 0.058), 0.8)
     _scene.camera((0.0, 0.0, 5.0), target, lens)
     scene.camera.data.clip_end = 1e5
-    scene.view_settings.exposure = 1.3
+    scene.view_settings.exposure = 0.7
     scene.render.resolution_x, scene.render.resolution_y = 960, 540
     _scene.limit(scene, 64, 0, 100.0)
     return scene

@@ -17,7 +17,7 @@ import _scene
 
 def build() -> bpy.types.Scene:
     """Make the scene and return it."""
-    return _rain.landscape(math.radians(18.0), (0.0, 100.0, 32.0), 24.0, preset="TWINNED")
+    return _rain.landscape(math.radians(18.0), (0.0, 100.0, 30.0), 26.0, preset="TWINNED")
 
 
 if __name__ == "__main__":

@@ -282,6 +282,26 @@ def test_small_and_large_falling_drops_make_a_twinned_bow():
     assert 1.0 < top[200.0] - top[500.0] < 3.0
 
 
+def test_two_sizes_of_flattened_drops_show_two_bows_at_the_top_and_one_at_the_feet():
+    angles, radius = bow_angles(37, 44)
+    tops = []
+    for clock in (0.0, np.pi / 2):
+        p = rainbow.phase_function(
+            "DROPLET", 500.0, [600.0], angles, 0.06, SUN, distribution="TWO_SIZES", sizes=16, flattening=1.0, clock_rad=clock
+        ).mean(axis=(0, 1))
+        peaks = np.flatnonzero((p[1:-1] > p[:-2]) & (p[1:-1] > p[2:])) + 1
+        tops.append(sorted(((p[i] / p.max(), radius[i]) for i in peaks), reverse=True)[:2])
+    assert tops[0][1][0] > 0.8 and 1.0 < abs(tops[0][0][1] - tops[0][1][1]) < 3.0
+    assert tops[1][1][0] < 0.5, "at the feet there is one bow and its supernumerary arcs"
+
+
+def test_two_sizes_share_the_light():
+    radii, weights = drops.quadrature(500.0, 0.06, "TWO_SIZES", 20)
+    area = weights * radii**2
+    assert area[radii > 350].sum() == pytest.approx(area.sum() / 2)
+    assert drops.quadrature(500.0, 0.0, "TWO_SIZES", 20)[0].size == 2
+
+
 @pytest.mark.parametrize("radius", [100.0, 500.0, 1000.0, 2500.0])
 @pytest.mark.parametrize("elevation", [0.0, 0.4, 1.2])
 def test_flat_drops_of_any_size_give_a_finite_table(radius, elevation):

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-DISTRIBUTIONS = ("NORMAL", "LOG_NORMAL", "GAMMA", "MARSHALL_PALMER")
+DISTRIBUTIONS = ("NORMAL", "LOG_NORMAL", "GAMMA", "MARSHALL_PALMER", "TWO_SIZES")
+SMALL_SHARE = 0.45  # radius of the smaller of two sizes over the larger: round where those of a millimetre across are flat
 LARGEST_SPREAD = 1.0
 SMALLEST_UM, LARGEST_UM = 0.1, 5000.0
 
@@ -21,7 +22,7 @@ def quadrature(radius_um: float, spread: float, distribution: str = "LOG_NORMAL"
     Parameters
     ----------
     radius_um : float
-        Mean radius, 0.1 to 5000 µm.
+        Mean radius, 0.1 to 5000 µm; of the larger drops with ``TWO_SIZES``.
     spread : float
         Standard deviation over the mean, 0 to 1; 0 is a single size. Marshall-Palmer's is 1 whatever is given, if not 0.
     distribution : str
@@ -42,6 +43,8 @@ def quadrature(radius_um: float, spread: float, distribution: str = "LOG_NORMAL"
         raise ValueError(f"no size distribution {distribution!r}; there are {', '.join(DISTRIBUTIONS)}")
     if count < 1:
         raise ValueError(f"at least one size is needed, not {count}")
+    if distribution == "TWO_SIZES":
+        return _two_sizes(radius_um, spread, count)
     if spread == 0 or count == 1:
         return np.array([float(radius_um)]), np.ones(1)
     log_spread = np.sqrt(np.log1p(spread**2))
@@ -69,6 +72,15 @@ def quadrature(radius_um: float, spread: float, distribution: str = "LOG_NORMAL"
         number = np.exp(-t)
     weights = number * steps
     return radii, weights / weights.sum()
+
+
+def _two_sizes(radius_um: float, spread: float, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Two log-normal populations of equal cross-section, as a shower has that grows out of another (twinned bows: Haussmann 2015)."""
+    halves = [
+        quadrature(max(radius, SMALLEST_UM), spread, "LOG_NORMAL", max(1, count // 2)) for radius in (SMALL_SHARE * radius_um, radius_um)
+    ]
+    weights = np.concatenate([w / (w * r**2).sum() for r, w in halves])
+    return np.concatenate([r for r, _ in halves]), weights / weights.sum()
 
 
 def marshall_palmer_mean_radius(rain_mm_h: float) -> float:
