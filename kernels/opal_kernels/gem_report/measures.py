@@ -30,8 +30,8 @@ _FISH_EYE, _NAIL_HEAD = 0.01, 0.5
 # Facets inside by which the girdle's image under the table is looked for; beyond, it is broken up.
 _FISH_EYE_FACETS = 3
 # Wavelengths (nm) and weights by which a coloured stone's shares are averaged: Gauss and Hermite's rule of three for the luminance of
-# white light, whose distribution has its mean at 558 nm and a deviation of 43 nm. A clear stone's shares are those of the D line.
-_LUMINANCE = ((484.0, 1 / 6), (558.0, 2 / 3), (632.0, 1 / 6))
+# white light, whose distribution has its mean at 557 nm and a deviation of 41 nm. A clear stone's shares are those of the D line.
+_LUMINANCE = ((485.3, 1 / 6), (556.8, 2 / 3), (628.5, 1 / 6))
 # The middle of the table, in table radii.
 _MIDDLE = 0.5
 

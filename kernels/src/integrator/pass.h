@@ -9,6 +9,7 @@
 #include "media/segment.h"
 #include "photons/photon_map.h"
 #include "photons/volume_map.h"
+#include "scene/interior.h"
 #include "scene/scene.h"
 
 #include <array>
@@ -37,6 +38,7 @@ struct PassContext {
       wavelengths[size_t(i)] = scene.colour.sample((float(i) + shift) / kPassWavelengths);
     const Transform camera = camera_transform(scene.camera, 0);
     camera_media = media_at(scene, camera.origin());
+    camera_interior = interior_at(scene, camera.origin());
     const float angle = scene.camera.polarizer_angle;
     polariser = {scene.camera.polarizer != 0, camera.axis(0) * std::cos(angle) + camera.axis(1) * std::sin(angle)};
   }
@@ -54,7 +56,8 @@ struct PassContext {
   PhotonMap photons;       // on surfaces
   VolumeMap volume;        // in media
   MediumSet camera_media;  // what the camera is in
-  Polariser polariser;     // before its lens
+  InteriorStack camera_interior;  // which gems it is in
+  Polariser polariser;            // before its lens
 };
 
 }  // namespace opal

@@ -63,6 +63,12 @@ class CameraPath {
     ray_.t_max -= ray_.t_min;
     ray_.t_min = 0;
     media_ = pass.camera_media;
+    if (!pass.camera_interior.empty()) {
+      interior_ = pass.camera_interior;
+      // Within a gem radiance is n^2 times what it is outside; the film keeps L / n^2, so that white stays white.
+      const Spectrum n = index_of_refraction(scene_, interior_.current(), w_);
+      throughput_ /= n * n;
+    }
     ++counts_.camera;
   }
 

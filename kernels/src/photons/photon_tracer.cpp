@@ -60,6 +60,7 @@ class PhotonPath {
     flux_ = sample.flux * (1.0f / float(task_.count));
     start_ = flux_.max();
     media_ = scene_.any_medium ? media_at(scene_, ray_.origin) : MediumSet{};
+    interior_ = interior_at(scene_, ray_.origin);
     return flux_.is_finite() && start_ > 0;
   }
 

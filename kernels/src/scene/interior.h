@@ -111,4 +111,7 @@ inline void cross_boundary(const Boundary &b, InteriorStack &interior) {
   else interior.leave(b.entry.instance, b.entry.material);
 }
 
+// What a path that starts at p is inside of: a camera or a lamp within a gem.
+InteriorStack interior_at(const Scene &scene, const Vec3 &p);
+
 }  // namespace opal
