@@ -119,10 +119,27 @@ struct Frame {
   constexpr Vec3 to_world(const Vec3 &v) const { return x * v.x + y * v.y + z * v.z; }
 };
 
+// Where faces coincide: which instances a path has crossed there already (scene/contact.h).
+struct Contact {
+  static constexpr int kMost = 4;
+  uint32_t crossed[kMost] = {};
+  int count = 0;
+  bool backward = false;  // after a reflection: what was crossed is met again, and nothing else
+  float until = 0;        // up to this distance along the ray; 0: no contact
+
+  bool contains(uint32_t instance) const {
+    for (int i = 0; i < count; ++i)
+      if (crossed[i] == instance) return true;
+    return false;
+  }
+  bool meets(uint32_t instance) const { return contains(instance) == backward; }
+};
+
 struct Ray {
   Vec3 origin, direction;  // direction is of unit length
   float t_min = 0, t_max = kInfinity;
   float time = 0;  // 0 at shutter open, 1 at close
+  Contact contact = {};
 };
 
 struct Bounds {

@@ -9,6 +9,7 @@
 
 #include "integrator/surface.h"
 #include "photons/gather.h"
+#include "scene/contact.h"
 #include "photons/volume_estimate.h"
 
 namespace opal {
@@ -82,7 +83,7 @@ class CameraPath {
 
  private:
   void step() {
-    const Hit hit = scene_.intersect(ray_, ray_kind_);
+    const Hit hit = next_hit(scene_, ray_, ray_kind_);
     ++counts_.path;
     if (hit.valid()) absorb(scene_, interior_, hit.t, w_, throughput_);
     if (!media_.empty()) {
@@ -243,7 +244,7 @@ class CameraPath {
     ray_kind_ = sample.scattering & kScatterTransmit  ? uint32_t(OPAL_RAY_TRANSMISSION)
                 : sample.scattering & kScatterDiffuse ? uint32_t(OPAL_RAY_DIFFUSE)
                                                       : uint32_t(OPAL_RAY_GLOSSY);
-    ray_ = {offset_origin(surface_.sp, sample.wi), sample.wi, 0, kInfinity, ray_.time};
+    ray_ = leave_surface(scene_, ray_, surface_.sp, sample.wi);
     travelled_ = 0;
     roulette(sampler_.get1d(dimension + kDimRoulette));
   }
@@ -270,9 +271,9 @@ class CameraPath {
 
   void go_straight_on() {
     travelled_ += surface_.sp.ray_length;
-    ray_.origin = offset_origin(surface_.sp, ray_.direction);
-    ray_.t_min = 0;
-    ray_.t_max = std::max(0.0f, ray_.t_max - surface_.sp.ray_length);
+    const float rest = std::max(0.0f, ray_.t_max - surface_.sp.ray_length);
+    ray_ = leave_surface(scene_, ray_, surface_.sp, ray_.direction);
+    ray_.t_max = rest;
     ++events_;
   }
 

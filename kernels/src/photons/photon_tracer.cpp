@@ -3,6 +3,7 @@
 
 #include "film/spectral_film.h"
 #include "integrator/surface.h"
+#include "scene/contact.h"
 #include "photons/transmittance_steps.h"
 
 namespace opal {
@@ -66,7 +67,7 @@ class PhotonPath {
 
   bool step(uint32_t events) {
     const uint32_t kind = sharp_events_ + rough_events_ == 0 ? uint32_t(OPAL_RAY_ALL & ~OPAL_RAY_CAMERA) : ray_kind_;
-    const Hit hit = scene_.intersect(ray_, kind);
+    const Hit hit = next_hit(scene_, ray_, kind);
     ++out_.rays;
     if (!media_.empty()) {
       bool alive = true;
@@ -320,7 +321,7 @@ class PhotonPath {
     return false;
   }
 
-  void go_on(const Vec3 &direction) { ray_ = {offset_origin(surface_.sp, direction), direction, 0, kInfinity, ray_.time}; }
+  void go_on(const Vec3 &direction) { ray_ = leave_surface(scene_, ray_, surface_.sp, direction); }
 
   // Leaves the photon: in the map, and on the film where the camera sees this point.
   void leave() {

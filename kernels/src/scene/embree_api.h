@@ -47,6 +47,33 @@ struct alignas(16) RTCRay {
   unsigned mask, id, flags;
 };
 
+// A query's context; only its instance numbers are Embree's, and a caller may keep its own data behind it.
+struct RTCRayQueryContext {
+  unsigned instance[4] = {kRtcInvalid, kRtcInvalid, kRtcInvalid, kRtcInvalid};  // as in RTCRayHit, with room to spare
+};
+struct RTCHit {
+  float ng_x, ng_y, ng_z, u, v;
+  unsigned prim, geom;
+  unsigned instance[2];
+};
+struct RTCFilterArguments {
+  int *valid;
+  void *geometry_data;
+  RTCRayQueryContext *context;
+  RTCRay *ray;
+  RTCHit *hit;
+  unsigned n;  // 1
+};
+struct RTCIntersectArguments {
+  int flags = 0;
+  unsigned feature_mask = ~0u;
+  RTCRayQueryContext *context = nullptr;
+  void (*filter)(const RTCFilterArguments *) = nullptr;
+  void *intersect = nullptr;
+  void *padding[2] = {};
+};
+enum : int { kRtcInvokeArgumentFilter = 2 };
+
 struct EmbreeApi {
   void *library = nullptr;
   RTCDevice (*new_device)(const char *config) = nullptr;

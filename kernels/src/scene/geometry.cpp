@@ -12,6 +12,17 @@ Vec3 absolute(const Vec3 &v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.
 
 Vec3 corner(const std::vector<float> &values, size_t first) { return {values[first], values[first + 1], values[first + 2]}; }
 
+// Looks past what a ray in contact must not meet.
+struct ContactQuery {
+  RTCRayQueryContext context;  // first: Embree hands it back
+  const Contact *contact;
+
+  static void filter(const RTCFilterArguments *a) {
+    const Contact &contact = *reinterpret_cast<const ContactQuery *>(a->context)->contact;
+    if (a->ray->tfar < contact.until && !contact.meets(a->hit->instance[0])) *a->valid = 0;
+  }
+};
+
 }  // namespace
 
 Vec3 Mesh::vertex(int i, float time) const {
@@ -26,9 +37,14 @@ Hit Scene::intersect(const Ray &ray, uint32_t visibility) const {
   r.dir_x = ray.direction.x, r.dir_y = ray.direction.y, r.dir_z = ray.direction.z;
   r.tnear = ray.t_min, r.tfar = ray.t_max, r.time = ray.time;
   r.mask = visibility, r.id = 0, r.flags = 0;
+  ContactQuery query{{}, &ray.contact};
+  RTCIntersectArguments arguments;
+  arguments.flags = kRtcInvokeArgumentFilter;
+  arguments.context = &query.context;
+  arguments.filter = &ContactQuery::filter;
   for (;;) {
     r.prim = r.geom = r.instance[0] = kRtcInvalid;
-    embree.intersect1(top, &r, nullptr);
+    embree.intersect1(top, &r, ray.contact.until > 0 ? &arguments : nullptr);
     if (r.geom == kRtcInvalid) return {};
     if (embree.ray_mask || (groups[instances[r.instance[0]].group].visibility & visibility)) break;
     r.tnear = std::nextafter(r.tfar, kInfinity), r.tfar = ray.t_max;  // a build that cannot mask: look past it

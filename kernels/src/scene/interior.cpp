@@ -30,7 +30,7 @@ Found look(const Scene &scene, const Vec3 &p, const Vec3 &direction) {
     const ShadingPoint sp = scene.shading_point(ray, hit);
     const uint32_t material = scene.material_index(hit.instance, hit.triangle);
     if (scene.materials[material].is_gem) {
-      const InteriorStack::Entry entry{sp.instance_index, material, scene.materials[material].gem.priority};
+      const InteriorStack::Entry entry{sp.instance_index, material, scene.materials[material].gem.priority, sp.instance->order};
       if (!sp.backfacing) entered.enter(entry);
       else if (entered.contains(entry.instance, entry.material)) entered.leave(entry.instance, entry.material);
       else if (found.count < InteriorStack::kCapacity) found.entries[found.count++] = entry;

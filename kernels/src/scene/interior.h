@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which gems a path is inside of, and what a boundary therefore separates.
 //
-// Interiors may overlap and touch: at every point the one of highest priority counts, the latest entered among equals
-// (Schmidt & Budge 2002, "Simple Nested Dielectrics in Ray Traced Images"). A boundary between two points that belong
-// to the same interior is no boundary, and the path goes straight on.
+// Interiors may overlap and touch: at every point the one of highest priority counts (Schmidt & Budge 2002, "Simple Nested
+// Dielectrics in Ray Traced Images"), among equals the smaller body, so that what lies within another body is in it without
+// being told. Which one counts does not depend on the path that led there, or light could get lost between them. A boundary
+// between two points that belong to the same interior is no boundary, and the path goes straight on.
 #pragma once
 
 #include "scene/scene.h"
@@ -17,6 +18,11 @@ class InteriorStack {
   struct Entry {
     uint32_t instance = 0, material = 0;
     int32_t priority = 0;
+    uint32_t order = 0;  // among equal priorities, Instance::order
+
+    bool fills_before(const Entry &other) const {
+      return priority != other.priority ? priority > other.priority : order >= other.order;
+    }
   };
 
   bool empty() const { return count_ == 0; }
@@ -48,7 +54,7 @@ class InteriorStack {
   const Entry *best(int ignored) const {
     const Entry *found = nullptr;
     for (int i = 0; i < count_; ++i)
-      if (i != ignored && (!found || entries_[i].priority >= found->priority)) found = &entries_[i];
+      if (i != ignored && (!found || entries_[i].fills_before(*found))) found = &entries_[i];
     return found;
   }
 
@@ -88,11 +94,11 @@ struct Boundary {
 inline Boundary boundary_at(const Scene &scene, const InteriorStack &interior, const ShadingPoint &sp, uint32_t material,
                             const Wavelengths &w) {
   Boundary b;
-  b.entry = {sp.instance_index, material, scene.materials[material].gem.priority};
+  b.entry = {sp.instance_index, material, scene.materials[material].gem.priority, sp.instance->order};
   b.entering = !sp.backfacing;
   if (b.entering) {
     const InteriorStack::Entry *front = interior.current();
-    b.real = !front || b.entry.priority >= front->priority;
+    b.real = !front || b.entry.fills_before(*front);
     b.n_front = index_of_refraction(scene, front, w);
     b.n_behind = index_of_refraction(scene, b.real ? &b.entry : front, w);
   } else {

@@ -50,6 +50,8 @@ struct Instance {
   uint32_t mesh = 0;
   Transform to_world, to_object, to_world_end;
   bool moving = false, mirrored = false;  // mirrored: negative determinant
+  bool touching = false;                  // its bounds meet those of a gem, or it is a gem and they meet another's
+  uint32_t order = 0;                     // by falling size of the bounds: the smallest comes last
   uint32_t group = 0;                     // index into Scene::groups
   float random = 0, object_index = 0;
   float color[4] = {1, 1, 1, 1};
@@ -130,6 +132,7 @@ struct Scene {
   std::shared_ptr<LightTables> lights;
   double build_seconds = 0;
   bool any_transparent_shadow = false;  // a material that shadow rays must look through
+  bool any_touching = false;            // faces of gems may coincide with others
   bool any_medium = false;              // rays must keep track of what they are in
   bool any_glowing_medium = false;      // a medium gives off light
   bool geometry_dirty = true, instances_dirty = true, lights_dirty = true;
