@@ -3,11 +3,33 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 
-def gem_mesh_problems(positions: np.ndarray, triangles: np.ndarray) -> list[str]:
-    """Sentences about a mesh whose inside matters.
+def mend_gem_mesh(arrays: Any, only_gems: bool) -> list[str]:
+    """Turns a gem's faces outwards where all of them look inwards; returns what there is to say.
+
+    Parameters
+    ----------
+    arrays : MeshArrays
+    only_gems : bool
+        Whether every material of the mesh is a gem; a mesh with other surfaces is left as it is.
+    """
+    problems, inverted = gem_mesh_problems(arrays.positions, arrays.triangles)
+    if inverted and only_gems:
+        arrays.triangles = np.ascontiguousarray(arrays.triangles[:, ::-1])
+        for name in ("corner_normals", "corner_tangents"):
+            values = getattr(arrays, name)
+            if values is not None:
+                shaped = values.reshape(len(arrays.triangles), 3, -1)[:, ::-1]
+                setattr(arrays, name, np.ascontiguousarray(-shaped if name == "corner_normals" else shaped).reshape(values.shape))
+    return problems
+
+
+def gem_mesh_problems(positions: np.ndarray, triangles: np.ndarray) -> tuple[list[str], bool]:
+    """Sentences about a mesh whose inside matters, and whether its faces all look inwards.
 
     Parameters
     ----------
@@ -17,7 +39,7 @@ def gem_mesh_problems(positions: np.ndarray, triangles: np.ndarray) -> list[str]
         (m, 3) corners.
     """
     if not len(triangles):
-        return []
+        return [], False
     # Corners in the same place are one: facets that are split along their edges still close the surface.
     _, place = np.unique(positions, axis=0, return_inverse=True)
     corners = place.reshape(-1)[triangles]
@@ -30,16 +52,12 @@ def gem_mesh_problems(positions: np.ndarray, triangles: np.ndarray) -> list[str]
     turns = np.bincount(which.reshape(-1), weights=forward)
     open_edges = int((uses % 2 == 1).sum())
     if open_edges:
-        return [
-            f"the gem's mesh is open at {open_edges} edges, so it has no inside; it is rendered as it is, and light that gets lost in its "
-            "holes is missing"
-        ]
-    problems = []
+        return [f"the gem's mesh is open at {open_edges} edges and has no proper inside: close its holes; it is rendered as it is"], False
     if (turns != 0).any():
-        problems.append("some faces of the gem look inwards, others outwards: recalculate the normals to the outside")
+        return ["some faces of the gem look inwards, others outwards: recalculate its normals to the outside"], False
     p = np.asarray(positions, float)
     p = p - p.mean(axis=0)
     volume = np.einsum("ij,ij->i", p[triangles[:, 0]], np.cross(p[triangles[:, 1]], p[triangles[:, 2]])).sum()
-    if volume < 0 and not problems:
-        problems.append("the faces of the gem look inwards; they are taken as looking outwards")
-    return problems
+    if volume < 0:
+        return ["the gem's normals are flipped, its faces look inwards; they are taken as looking outwards"], True
+    return [], False

@@ -16,6 +16,7 @@ from opal_kernels.descriptions import Attribute, Camera, Light
 from opal_kernels.scene import Scene
 
 from ..report import Report
+from .gem_meshes import mend_gem_mesh
 from .instances import Group, collect
 from .lights import LightLinks, light_from_object, out_of_range
 from .materials import Materials, fills
@@ -119,7 +120,7 @@ class SceneBuilder:
         needs = self._context.mesh_needs()
         for count, group in enumerate(visible.groups):
             self._stage(f"Reading meshes, {count + 1} of {len(visible.groups)}")
-            snapshot.mesh_of_group.append(self._read_mesh(group, needs, snapshot, bodies[count - 1]))
+            snapshot.mesh_of_group.append(self._read_mesh(group, needs, snapshot, bodies[count]))
         snapshot.groups = visible.groups
         return snapshot
 
@@ -160,6 +161,9 @@ class SceneBuilder:
             arrays = snapshot.meshes[key] = read_mesh(group.mesh, needs)
             for sentence in arrays.problems if arrays is not None else ():
                 self._report.add(group.name, sentence)
+            if arrays is not None and (gems := [m for m in group.materials if m is not None and m.opal.kind == "GEM"]):
+                for sentence in mend_gem_mesh(arrays, only_gems=len(gems) == len(group.materials)):
+                    self._report.add(group.name, sentence)
         group.mesh = None
         return key
 

@@ -103,6 +103,7 @@ class CameraPath {
       return;
     }
     make_surface(scene_, ray_, hit, ray_kind_, bounces_, interior_, w_, surface_);
+    if (surface_.is_gem) note_way_in(surface_.boundary);
     if (surface_.nothing) {
       cross_boundary(surface_.boundary, interior_);
       go_straight_on();
@@ -116,6 +117,14 @@ class CameraPath {
     }
     if (surface_.closures.holdout > 0 && bounces_ == 0) light_.alpha *= 1 - surface_.closures.holdout;
     scatter();
+  }
+
+  // A path that meets the inner side of a gem without having entered came through a hole in its mesh: taken as having
+  // entered there, so that radiance is not scaled up on the way out alone.
+  void note_way_in(const Boundary &b) {
+    if (b.entering || interior_.contains(b.entry.instance, b.entry.material)) return;
+    throughput_ /= b.n_front * b.n_front;
+    interior_.enter(b.entry);
   }
 
   // ---- Light that the ray meets ----
@@ -141,6 +150,10 @@ class CameraPath {
 
   void escape() {
     alive_ = false;
+    if (!interior_.empty()) {  // out through a hole
+      const Spectrum n = index_of_refraction(scene_, interior_.current(), w_);
+      throughput_ *= n * n;
+    }
     const bool seen_at_first_hand = bounces_ == 0;
     if (seen_at_first_hand && settings_.transparent_film) light_.alpha = 0;
     EscapedRadiance sources[8];
