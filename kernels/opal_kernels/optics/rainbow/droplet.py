@@ -300,7 +300,11 @@ class Drop:
 
         `sizes` are size parameters, `share` their part of the drops' cross-section (sum 1).
         """
-        bows = self._bows(background.CENTRES, sizes, share) + background.edge(background.CENTRES, sizes, share)
+        if self._shape.flattening > 0:  # one place of the bow does not say what all round it sums to: the rays of a sphere do
+            bows = sum(self._densities[k] for k in background.BOWS)
+        else:
+            bows = self._bows(background.CENTRES, sizes, share)
+        bows = bows + background.edge(background.CENTRES, sizes, share)
         rest = background.closed(self._densities, bows)
         grazing = background.edge(angles_rad, sizes, share)
         return background.at(angles_rad, rest) + self._bows(np.asarray(angles_rad, float), sizes, share) + grazing
