@@ -139,7 +139,8 @@ int PhaseFunction::places(const Vec3 &light, const Vec3 &onward, size_t place[4]
   if (oriented_.empty()) return 1;
   const auto between = [](const std::vector<float> &nodes, float x, size_t &first, float &t) {
     const auto it = std::upper_bound(nodes.begin(), nodes.end(), x);
-    first = size_t(std::clamp<std::ptrdiff_t>(it - nodes.begin() - 1, 0, std::max<std::ptrdiff_t>(0, std::ptrdiff_t(nodes.size()) - 2)));
+    first = size_t(
+        std::clamp<std::ptrdiff_t>(it - nodes.begin() - 1, 0, std::max<std::ptrdiff_t>(0, std::ptrdiff_t(nodes.size()) - 2)));
     t = nodes.size() > 1 ? saturate((x - nodes[first]) / std::max(nodes[first + 1] - nodes[first], 1e-9f)) : 0.0f;
   };
   const float elevation = std::asin(clamp(-light.z, -1.0f, 1.0f));
