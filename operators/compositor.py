@@ -19,6 +19,8 @@ from . import layers
 
 NAME = "Opal Composite"
 _IS_GROUP = bpy.app.version >= (5, 0, 0)
+# What Blender 4.5 puts into a new compositor.
+_DEFAULT = {"CompositorNodeRLayers", "CompositorNodeComposite", "CompositorNodeViewer", "NodeReroute"}
 
 
 def build(scene: Any, images: Mapping[str, Any]) -> tuple[Any, bool]:
@@ -143,7 +145,7 @@ def _show(scene: Any, tree: Any) -> bool:
     nodes, links = scene.node_tree.nodes, scene.node_tree.links
     group = next((n for n in nodes if n.bl_idname == "CompositorNodeGroup" and n.node_tree == tree), None)
     output = next((n for n in nodes if n.bl_idname == "CompositorNodeComposite"), None)
-    untouched = {n.bl_idname for n in nodes if n != group} <= {"CompositorNodeRLayers", "CompositorNodeComposite", "CompositorNodeViewer"}
+    untouched = {n.bl_idname for n in nodes if n != group} <= _DEFAULT
     if group is None:
         group = nodes.new("CompositorNodeGroup")
         group.node_tree = tree
