@@ -92,7 +92,7 @@ class OPAL_OT_compare_cycles(bpy.types.Operator):
         return {"FINISHED"}
 
     def _cycles_settings(self, scene: Any, ours: render_scene.Rendered) -> dict[str, Any]:
-        settings = {} if self.use_scene_settings else {**cycles_base.settings(scene), "volume_bounces": min(1024, scene.opal.max_depth)}
+        settings = {} if self.use_scene_settings else cycles_base.settings(scene)
         if not self.use_scene_settings:
             settings |= {"caustics_reflective": True, "caustics_refractive": True}
         if self.equal == "TIME":

@@ -97,7 +97,7 @@ def settings(scene: Any) -> dict[str, Any]:
         "diffuse_bounces": depth,
         "glossy_bounces": depth,
         "transmission_bounces": depth,
-        "volume_bounces": 0,
+        "volume_bounces": depth,
         "transparent_max_bounces": opal.transparent_depth,
         "sample_clamp_direct": 0.0,
         "sample_clamp_indirect": 0.0,

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from opal_kernels import droplets
-from opal_kernels.descriptions import Density, Light, LightType
+from opal_kernels.descriptions import Density, Light, LightType, MediumLayer
 from opal_kernels.optics.rainbow import sight
 from opal_kernels.scene import Scene
 
@@ -83,7 +83,7 @@ class Rain:
         """
         drops, phase = self.phase(rainbow)
         medium = self._scene.add_medium(rainbow.extinction * drops.extinction_factor, 1.0, phase)
-        self._scene.set_medium_layer(medium, rainbow=True)
+        self._scene.set_medium_layer(medium, MediumLayer.RAINBOW)
         return medium
 
     def add_world(self, world: Any) -> int:
@@ -96,7 +96,7 @@ class Rain:
                 world.name, f"Rain without a scale height would let no sun through: it is rendered with one of {RAIN_HEIGHT:g} m."
             )
         drops, phase = self.phase(settings.rainbow)
-        return self._scene.add_medium(
+        medium = self._scene.add_medium(
             settings.rainbow.extinction * drops.extinction_factor,
             1.0,
             phase,
@@ -104,6 +104,8 @@ class Rain:
             scale_height=height,
             base_height=settings.base_height,
         )
+        self._scene.set_medium_layer(medium, MediumLayer.RAINBOW)
+        return medium
 
     def phase(self, rainbow: Any) -> tuple[droplets.Drops, Any]:
         """The drops and their phase function; errors as `add`."""

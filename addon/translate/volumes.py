@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from opal_kernels import binding
-from opal_kernels.descriptions import Attribute, Density, EmissionDensity, Medium, Phase, PhaseKind
+from opal_kernels.descriptions import Attribute, Density, EmissionDensity, Medium, MediumLayer, Phase, PhaseKind
 from opal_kernels.optics import colour, illuminants, uplift
 from opal_kernels.optics import phase_functions as phases
 from opal_kernels.scene import Scene
@@ -157,7 +157,9 @@ class Volumes:
         empty = (medium.extinction, medium.emission) == (-1, -1)
         if empty and not (medium.scattering_grid or medium.absorption_grid or medium.emission_grid):
             return -1
-        return binding.scene_add_medium(self._scene.handle, medium)
+        number = binding.scene_add_medium(self._scene.handle, medium)
+        self._scene.set_medium_layer(number, MediumLayer.BASE)  # nodes that Cycles renders as well
+        return number
 
     def _add_coefficients(self, volume: CompiledVolume, body: Body, medium: Medium) -> None:
         parts = [c for c in (volume.scattering, volume.absorption) if c.present]

@@ -173,13 +173,13 @@ def _scale(plan: Plan, socket: str, source: tuple[str, str | int]) -> None:
 
 def _density(plan: Plan, opal: Any, world: bool) -> tuple[str, str | int] | None:
     """The density field as an output of some node; None where it is 1 everywhere."""
-    if world:
-        return _height(plan, opal) if opal.scale_height > 0 else None
+    if world and (height := _scale_height(opal)) > 0:
+        return _height(plan, height, opal.base_height)
     if opal.kind != "MEDIUM" or opal.medium.density == "HOMOGENEOUS":
         return None
     if opal.medium.density == "GRID":
         return _grid(plan, "Grid", opal.medium.grid)
-    return _noise(plan, opal.medium)
+    return _noise(plan, opal.medium, world)
 
 
 def _grid(plan: Plan, name: str, grid: str) -> tuple[str, str]:
@@ -187,26 +187,35 @@ def _grid(plan: Plan, name: str, grid: str) -> tuple[str, str]:
     return name, "Fac"
 
 
-def _noise(plan: Plan, medium: Any) -> tuple[str, int]:
+def _noise(plan: Plan, medium: Any, world: bool) -> tuple[str, int]:
     """saturate(1/2 + contrast (n - 1/2)) of fractal noise n, as the kernels have it."""
-    plan.add("Place", "ShaderNodeTexCoord", -4)
+    plan.add("Place", "ShaderNodeNewGeometry" if world else "ShaderNodeTexCoord", -4)
     plan.add("Size", "ShaderNodeVectorMath", -3, {"operation": "MULTIPLY_ADD"})
     plan.nodes["Size"].values = {1: (1 / medium.noise_scale,) * 3, 2: noise_offset(medium.noise_seed)}
     plan.add("Noise", "ShaderNodeTexNoise", -2, Scale=1.0, Detail=medium.noise_detail, Roughness=0.5, Lacunarity=2.0, Distortion=0.0)
     plan.add("Contrast", "ShaderNodeMath", -1, {"operation": "MULTIPLY_ADD", "use_clamp": True})
     plan.nodes["Contrast"].values = {1: medium.noise_contrast, 2: 0.5 - 0.5 * medium.noise_contrast}
-    plan.join("Place", "Object", "Size", 0)
+    plan.join("Place", "Position" if world else "Object", "Size", 0)
     plan.join("Size", 0, "Noise", "Vector")
     plan.join("Noise", 0, "Contrast", 0)
     return "Contrast", 0
 
 
-def _height(plan: Plan, opal: Any) -> tuple[str, int]:
+def _scale_height(opal: Any) -> float:
+    """The world's scale height as it is rendered: rain that says none has one (translate/rainbow.py)."""
+    if opal.kind == "RAINBOW" and opal.scale_height <= 0:
+        from ..translate.rainbow import RAIN_HEIGHT
+
+        return RAIN_HEIGHT
+    return opal.scale_height
+
+
+def _height(plan: Plan, height: float, base: float) -> tuple[str, int]:
     """exp(-(z - base) / scale) above the base height, 1 below."""
     plan.add("Place", "ShaderNodeNewGeometry", -4)
     plan.add("Position", "ShaderNodeSeparateXYZ", -3)
     plan.add("Height", "ShaderNodeMath", -2, {"operation": "MULTIPLY_ADD"})
-    plan.nodes["Height"].values = {1: -1 / opal.scale_height, 2: opal.base_height / opal.scale_height}
+    plan.nodes["Height"].values = {1: -1 / height, 2: base / height}
     plan.add("Above", "ShaderNodeMath", -1, {"operation": "MINIMUM"})
     plan.nodes["Above"].values = {1: 0.0}
     plan.add("Falloff", "ShaderNodeMath", 0, {"operation": "EXPONENT"})

@@ -151,7 +151,9 @@ typedef struct opal_medium_desc {
 } opal_medium_desc;
 
 OPAL_EXPORT int32_t opal_scene_add_medium(opal_scene *scene, const opal_medium_desc *medium);
-/* Which compositing layer shows what the medium scatters: 0 media (as added), 1 rainbows. */
+/* Which compositing layer shows what the medium scatters. BASE: the other engine renders the medium itself, as it does
+ * surfaces. */
+enum { OPAL_MEDIUM_LAYER_MEDIA = 0, OPAL_MEDIUM_LAYER_RAINBOW = 1, OPAL_MEDIUM_LAYER_BASE = 2 };
 OPAL_EXPORT int32_t opal_scene_set_medium_layer(opal_scene *scene, int32_t medium, int32_t layer);
 /* The medium that fills the world, outside of everything too; -1 for none. */
 OPAL_EXPORT int32_t opal_scene_set_world_medium(opal_scene *scene, int32_t medium);
@@ -231,10 +233,10 @@ typedef struct opal_mesh_desc {
 /* Places inside of an object at which a program is asked for what it emits. */
 typedef struct opal_places_desc {
   int64_t n;
-  const float *positions;   /* n x 3, object space */
-  const float *generated;   /* n x 3 texture coordinates, or NULL: zeros */
-  const float *transform;   /* 12: object to world, or NULL: the identity */
-  const float *object_info; /* 8, as in opal_instances_desc, or NULL */
+  const float *positions;                /* n x 3, object space */
+  const float *generated;                /* n x 3 texture coordinates, or NULL: zeros */
+  const float *transform;                /* 12: object to world, or NULL: the identity */
+  const float *object_info;              /* 8, as in opal_instances_desc, or NULL */
   const opal_attribute_desc *attributes; /* of domain OPAL_DOMAIN_VERTEX: one value a place */
   int32_t n_attributes;
   int32_t reserved;

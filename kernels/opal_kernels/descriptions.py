@@ -157,6 +157,14 @@ class Pass(IntEnum):
     LAYER_RAINBOW = 17
 
 
+class MediumLayer(IntEnum):
+    """Which compositing layer shows a medium; ``BASE``: the other engine renders it as it does surfaces."""
+
+    MEDIA = 0
+    RAINBOW = 1
+    BASE = 2
+
+
 # Channels of each pass; the spectral one has as many as the settings ask for.
 PASS_CHANNELS = {
     Pass.COMBINED: 4,

@@ -164,9 +164,9 @@ class Scene:
             medium.phase = binding.scene_add_phase(self.handle, phase)
         return binding.scene_add_medium(self.handle, medium)
 
-    def set_medium_layer(self, medium: int, rainbow: bool) -> None:
-        """Says whether what a medium scatters goes to the compositing layer of rainbows instead of that of media."""
-        binding.scene_set_medium_layer(self.handle, medium, int(rainbow))
+    def set_medium_layer(self, medium: int, layer: int) -> None:
+        """Says which compositing layer (`MediumLayer`) shows what a medium scatters."""
+        binding.scene_set_medium_layer(self.handle, medium, int(layer))
 
     def set_world_medium(self, medium: int) -> None:
         """Fills the world with a medium; -1 takes it away."""

@@ -30,6 +30,22 @@ def test_the_composite_is_the_full_render_within_noise(attenuation):
     np.testing.assert_allclose(composite[..., 3], 1.0, atol=0.1)
 
 
+def test_volumes_of_nodes_stay_cycles_own_and_the_picture_is_whole():
+    """Smoke made with nodes scatters in the base as it does in Opal, beside a gem and fog that Opal renders."""
+    layer_stage.build(passes=12)
+    smoke = stage.node_material("Smoke", "VolumeScatter", Density=0.6)
+    tree = smoke.node_tree
+    output = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeOutputMaterial")
+    shader = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeVolumeScatter")
+    for link in list(tree.links):
+        tree.links.remove(link)
+    tree.links.new(shader.outputs[0], output.inputs["Volume"])
+    layer_stage.cube("Smoke", smoke, (-2.5, -1.5, 0.3), (-1.2, -0.3, 1.2))
+    composite, full = both()
+    ratio = layer_stage.blocks(composite)[..., :3] / layer_stage.blocks(full)[..., :3]
+    np.testing.assert_allclose(ratio, 1.0, atol=0.02, err_msg=str(np.round(ratio[..., 1], 3)))
+
+
 def test_with_a_transparent_film_alpha_is_the_full_renders():
     scene = layer_stage.build(passes=8)
     scene.render.film_transparent = True

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from opal_kernels import programs
-from opal_kernels.descriptions import Light, LightType, MaterialFlag, Pass, World
+from opal_kernels.descriptions import Light, LightType, MaterialFlag, MediumLayer, Pass, World
 from opal_kernels.render import Render
 from opal_kernels.scene import Scene
 from transport_scenes import IDENTITY, box, looking_down, perspective, placed, sphere, square
@@ -37,7 +37,7 @@ def add_gem(scene):
 
 def add_fog(scene, rainbow=False, extinction=0.4, albedo=0.8):
     fog = scene.add_medium(extinction, albedo)
-    scene.set_medium_layer(fog, rainbow)
+    scene.set_medium_layer(fog, MediumLayer.RAINBOW if rainbow else MediumLayer.MEDIA)
     body = scene.add_material(flags=MaterialFlag.NO_SURFACE, medium=fog)
     scene.add_instances(scene.add_mesh(*box((-3, -3, 1.0), (3, 3, 2.0))), IDENTITY, [body])
 

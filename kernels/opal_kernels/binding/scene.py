@@ -189,7 +189,7 @@ def scene_set_grid_block(scene: int, grid: int, values: Any, origin: Sequence[in
 
 
 def scene_set_medium_layer(scene: int, medium: int, layer: int) -> None:
-    """Says which compositing layer a medium's light goes to: 0 media, 1 rainbows."""
+    """Says which compositing layer (`MediumLayer`) shows what a medium scatters."""
     checked(library().opal_scene_set_medium_layer(scene, medium, layer))
 
 

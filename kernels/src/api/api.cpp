@@ -332,8 +332,8 @@ int32_t opal_scene_set_grid_block(opal_scene *scene, int32_t grid, const int32_t
 int32_t opal_scene_set_medium_layer(opal_scene *scene, int32_t medium, int32_t layer) {
   return guarded([&] {
     require(scene && medium >= 0 && medium < int32_t(scene->media.size()), "No such medium");
-    require(layer == 0 || layer == 1, "There are two layers of media: 0 and 1");
-    scene->media[size_t(medium)].rainbow = layer == 1;
+    require(layer >= OPAL_MEDIUM_LAYER_MEDIA && layer <= OPAL_MEDIUM_LAYER_BASE, "Unknown layer of a medium");
+    scene->media[size_t(medium)].layer = uint8_t(layer);
     return 0;
   });
 }

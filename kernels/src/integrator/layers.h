@@ -10,6 +10,7 @@
 
 #include "core/spectrum.h"
 #include "core/vec.h"
+#include "opal.h"
 
 #include <array>
 
@@ -44,8 +45,12 @@ class LayerTracker {
     base_share_ = Spectrum(0.0f);
   }
 
-  void meet_medium(bool rainbow) {
-    const Layer layer = rainbow ? Layer::Rainbow : Layer::Media;
+  void meet_medium(int medium_layer) {
+    if (medium_layer == OPAL_MEDIUM_LAYER_BASE) {  // the base scatters there too, and after it nothing is left out
+      any_event_ = true, after_diffuse_ = false;
+      return;
+    }
+    const Layer layer = medium_layer == OPAL_MEDIUM_LAYER_RAINBOW ? Layer::Rainbow : Layer::Media;
     if (!any_event_) first_ = layer;
     else if (!base_share_.is_zero()) added_ = layer;  // a gem's light stays the gem's
     any_event_ = true;

@@ -372,9 +372,9 @@ class CameraPath {
   // For as long as it lives, light that is added comes from an event in a medium.
   class InMedium {
    public:
-    InMedium(CameraPath &path, bool rainbow) : path_(path), layers_(path.layers_), first_(path.medium_first_) {
+    InMedium(CameraPath &path, int layer) : path_(path), layers_(path.layers_), first_(path.medium_first_) {
       if (path.bounces_ == 0) path.medium_first_ = true;
-      path.layers_.meet_medium(rainbow);
+      path.layers_.meet_medium(layer);
     }
     ~InMedium() { path_.layers_ = layers_, path_.medium_first_ = first_; }
     InMedium(const InMedium &) = delete;
@@ -394,7 +394,7 @@ class CameraPath {
     if (!here.emission.is_zero()) add_emitted(here, t_end);
     if (here.scatters() && !final_ray_) {
       gather_along(here, t_end, dimension);
-      gather_volume(CameraWay(here), t_end, mostly_rainbow(here), dimension);
+      gather_volume(CameraWay(here), t_end, layer_of(here), dimension);
     }
 
     const float sigma = here.extinction[0];
@@ -403,15 +403,15 @@ class CameraPath {
     if (!(t < t_end)) {
       if (std::isfinite(t_end)) {
         pass_unscattered(here.extinction, t_end);
-        if (keeps_layers_) layers_.pass_media(transmittance_over(here.extinction, t_end));
+        if (keeps_layers_) layers_.pass_media(transmittance_over(here.replaced, t_end));
       } else if (sigma > 0) {
-        layers_.meet_medium(mostly_rainbow(here));
+        layers_.meet_medium(layer_of(here));
         alive_ = false;
       }
       return !alive_;
     }
     if (final_ray_ || !(here.scattering[0] > 0)) {
-      layers_.meet_medium(mostly_rainbow(here));
+      layers_.meet_medium(layer_of(here));
       alive_ = false;
       return true;
     }
@@ -436,7 +436,7 @@ class CameraPath {
       alive_ = false;
       return true;
     }
-    layers_.meet_medium(mostly_rainbow(here, -direction, -forward));
+    layers_.meet_medium(layer_of(here, -direction, -forward));
     last_ = {};
     last_.light_was_sampled = true;
     last_.event = EventClass::Rough;
@@ -485,7 +485,7 @@ class CameraPath {
     RandomStream random(sampler_, dimension + kDimMedium);
     MediumHere here;
     const auto glow = [&](const Spectrum &contribution, const Spectrum &pdf) {
-      const InMedium scope(*this, mostly_rainbow(here));
+      const InMedium scope(*this, layer_of(here));
       add(contribution / pdf.average(), false);
     };
     Walk walk{throughput_, path_pdf_, previous_pdf_};
@@ -505,12 +505,12 @@ class CameraPath {
     if (!collided) {
       take();
       alive_ = throughput_.is_finite() && !throughput_.is_zero();
-      if (!alive_) layers_.meet_medium(mostly_rainbow(here));
+      if (!alive_) layers_.meet_medium(layer_of(here));
       else if (keeps_layers_ && bounces_ == 0) layers_.pass_media(marched_transmittance(t_end));
       return !alive_;
     }
     if (final_ray_ || here.scattering.is_zero()) {
-      layers_.meet_medium(mostly_rainbow(here));
+      layers_.meet_medium(layer_of(here));
       alive_ = false;
       return true;
     }
@@ -543,7 +543,7 @@ class CameraPath {
       alive_ = false;
       return true;
     }
-    layers_.meet_medium(mostly_rainbow(here, -direction, -forward));
+    layers_.meet_medium(layer_of(here, -direction, -forward));
     if (bounces_ == 0) medium_first_ = true;
     ++bounces_, ++events_, ++rough_events_;
     rough_in_medium_ = true;
@@ -564,7 +564,7 @@ class CameraPath {
     const Spectrum phase = here.phase_value(w_, dot(forward, sample.wi));
     const Spectrum share = last_.share(sample.dirac ? Spectrum(0.0f) : phase, sample.pdf);
     const Spectrum scattered = here.scattered(w_, -sample.wi, -forward, filter());
-    const InMedium scope(*this, mostly_rainbow(here, -sample.wi, -forward));
+    const InMedium scope(*this, layer_of(here, -sample.wi, -forward));
     add_connected(throughput_ * share * scattered * sample.radiance, sample, last_.p, path_pdf_,
                   sample.dirac ? Spectrum(0.0f) : phase, dimension + kDimLight);
   }
@@ -595,7 +595,7 @@ class CameraPath {
     Spectrum share = there.share(sample.dirac ? Spectrum(0.0f) : phase, sample.pdf);
     for (int i = 0; i < kWavelengths; ++i) share[i] = 1 - share[i];
     const Spectrum scattered = here.scattering * here.scattered(w_, -sample.wi, -ray_.direction, filter());
-    const InMedium scope(*this, mostly_rainbow(here, -sample.wi, -ray_.direction));
+    const InMedium scope(*this, layer_of(here, -sample.wi, -ray_.direction));
     add_connected(walk.throughput * scattered * share * sample.radiance / distance_pdf, sample, p, walk.light_pdf,
                   Spectrum(0.0f), dimension + kDimMediumLight);
   }
@@ -620,7 +620,7 @@ class CameraPath {
       const float depth = sigma > 0 ? -std::expm1(-sigma * t_end) / sigma : t_end;
       if (std::isfinite(depth)) emitted[i] = here.emission[i] * depth;
     }
-    const InMedium scope(*this, mostly_rainbow(here));
+    const InMedium scope(*this, layer_of(here));
     add(throughput_ * emitted / path_pdf_.average(), false);
   }
 
@@ -650,7 +650,7 @@ class CameraPath {
     Spectrum pdf = path_pdf_ * passed.light_pdf * (distance_pdf * sample.pdf);
     if (!sample.dirac) pdf += path_pdf_ * here.extinction * through * phase * passed.path_pdf;
     contribution *= uplift(passed.surfaces, w_) * passed.medium / pdf.average();
-    const InMedium scope(*this, mostly_rainbow(here, -sample.wi, -ray_.direction));
+    const InMedium scope(*this, layer_of(here, -sample.wi, -ray_.direction));
     add_scattered(contribution, false);
   }
 
@@ -685,7 +685,7 @@ class CameraPath {
     if (pass_.volume.empty() || !gathers_after_rough(settings_.photons_carry, rough_events_)) return;
     if (!pass_.volume.clip(ray_.origin, ray_.direction, PassContext::set_of(index_), t_begin, t_end)) return;
     const CameraWay way(scene_, media_, w_, ray_, t_end, RandomStream(sampler_, dimension + kDimMarch));
-    gather_volume(way, t_end, mostly_rainbow(way.at(0.5f * (t_begin + t_end))), dimension);
+    gather_volume(way, t_end, layer_of(way.at(0.5f * (t_begin + t_end))), dimension);
   }
 
   // ---- Bookkeeping ----
@@ -740,25 +740,19 @@ class CameraPath {
     return share;
   }
 
-  // Of overlapping media the one that scatters most of this light takes it into its layer.
-  bool mostly_rainbow(const MediumHere &here, const Vec3 &light, const Vec3 &onward) const {
-    if (!keeps_layers_ || here.rainbow_part.is_zero()) return false;
-    if (here.n == 1) return true;
-    return here.rainbow_scattered(w_, light, onward).sum() >
-           0.5f * (here.scattering * here.phase_value(w_, dot(light, onward))).sum();
+  // The layer of an event in media: of overlapping ones that which scatters most of this light; without a direction, of what
+  // is taken or given off.
+  int layer_of(const MediumHere &here, const Vec3 &light, const Vec3 &onward) const {
+    return keeps_layers_ ? here.layer_of(w_, dot(light, onward)) : 0;
   }
-
-  // The same without a direction: of what is taken or given off.
-  static bool mostly_rainbow(const MediumHere &here) {
-    return !here.rainbow_part.is_zero() && here.rainbow_part.sum() > 0.5f * here.scattering.sum();
-  }
+  int layer_of(const MediumHere &here) const { return keeps_layers_ ? here.layer_of(w_, 0) : 0; }
 
   // Transmittance of the media that vary between the ray's origin and t_end, by quadrature: it only weighs what is measured.
   Spectrum marched_transmittance(float t_end) const {
     constexpr int kSteps = 64;
     const RayMedia media(scene_, media_, w_, ray_);
     Spectrum depth(0.0f);
-    for (int i = 0; i < kSteps; ++i) depth += media.at((float(i) + 0.5f) * t_end / kSteps).extinction;
+    for (int i = 0; i < kSteps; ++i) depth += media.at((float(i) + 0.5f) * t_end / kSteps).replaced;
     return transmittance_over(depth, t_end / kSteps);
   }
 

@@ -5,6 +5,7 @@
 #include "core/spectrum.h"
 #include "media/density.h"
 #include "media/phase_function.h"
+#include "opal.h"
 
 #include <array>
 
@@ -21,7 +22,7 @@ struct Medium {
   int phase = -1;  // index into Scene::phases, -1: isotropic
   DensityField density, emission_density;
   int scattering_grid = -1, absorption_grid = -1, emission_grid = -1;  // three channels
-  bool rainbow = false;                                                // its light belongs to the layer of rainbows
+  uint8_t layer = OPAL_MEDIUM_LAYER_MEDIA;                             // for compositing
 
   bool varies() const {
     return density.kind != DensityKind::Homogeneous || emission_density.kind != DensityKind::Homogeneous ||

@@ -3,6 +3,8 @@
 
 #include "scene/interior.h"
 
+#include <algorithm>
+
 namespace opal {
 
 MediumHere medium_here(const Scene &scene, const MediumSet &set, const Wavelengths &w) {
@@ -11,14 +13,16 @@ MediumHere medium_here(const Scene &scene, const MediumSet &set, const Wavelengt
   for (int i = 0; i < set.count(); ++i) {
     const Medium &medium = scene.media[size_t(set[i].medium)];
     const auto table = [&](int s) { return s >= 0 ? lookup(scene.spectra[size_t(s)], w) : Spectrum(0.0f); };
-    here.extinction += table(medium.extinction);
+    const Spectrum extinction = table(medium.extinction);
+    here.extinction += extinction;
+    here.any_layer = medium.layer;
+    if (medium.layer != OPAL_MEDIUM_LAYER_BASE) here.replaced += extinction;
     here.emission += table(medium.emission);
     const Spectrum scattering = table(medium.scattering);
     if (scattering.is_zero()) continue;
     here.scattering += scattering;
     here.part[here.n] = scattering;
-    here.rainbow[here.n] = medium.rainbow;
-    if (medium.rainbow) here.rainbow_part += scattering;
+    here.layer[here.n] = medium.layer;
     here.phase[here.n++] = medium.phase >= 0 ? &scene.phases[size_t(medium.phase)] : &kIsotropic;
   }
   return here;
@@ -46,11 +50,12 @@ Spectrum MediumHere::scattered(const Wavelengths &w, const Vec3 &light, const Ve
   return sum;
 }
 
-Spectrum MediumHere::rainbow_scattered(const Wavelengths &w, const Vec3 &light, const Vec3 &onward) const {
-  Spectrum sum(0.0f);
-  for (int i = 0; i < n; ++i)
-    if (rainbow[i]) sum += part[i] * phase[i]->scattered(w, light, onward, nullptr);
-  return sum;
+int MediumHere::layer_of(const Wavelengths &w, float cosine) const {
+  if (n == 0) return any_layer;
+  if (n == 1) return layer[0];
+  float light[3] = {};
+  for (int i = 0; i < n; ++i) light[layer[i]] += (part[i] * phase[i]->value(w, cosine)).sum();
+  return int(std::max_element(light, light + 3) - light);
 }
 
 Vec3 MediumHere::sample_phase(const Wavelengths &w, const Vec3 &forward, float pick, Vec2 u, float &density) const {

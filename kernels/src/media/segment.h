@@ -11,18 +11,19 @@ namespace opal {
 // What a ray is in at the path's wavelengths.
 struct MediumHere {
   Spectrum extinction{0.0f}, scattering{0.0f}, emission{0.0f};
-  Spectrum rainbow_part{0.0f};  // of the scattering, by media whose layer is rainbows
+  Spectrum replaced{0.0f};  // of the extinction, by media that the layers' base leaves out
   int n = 0;
   const PhaseFunction *phase[MediumSet::kCapacity] = {};
-  Spectrum part[MediumSet::kCapacity];  // of the scattering, by medium
-  bool rainbow[MediumSet::kCapacity] = {};
+  Spectrum part[MediumSet::kCapacity];       // of the scattering, by medium
+  uint8_t layer[MediumSet::kCapacity] = {};  // OPAL_MEDIUM_LAYER_*, by medium
 
   // The phase functions' mixture, at every wavelength: what sample_phase samples.
   Spectrum phase_value(const Wavelengths &w, float cosine) const;
   // What is scattered of unpolarised light that goes along `light`, on along `onward`; `filter` may be null.
   Spectrum scattered(const Wavelengths &w, const Vec3 &light, const Vec3 &onward, const Polariser *filter) const;
-  // Scattering times phase function of the rainbows alone.
-  Spectrum rainbow_scattered(const Wavelengths &w, const Vec3 &light, const Vec3 &onward) const;
+  int any_layer = OPAL_MEDIUM_LAYER_MEDIA;  // of one of the media, where none scatters
+  // The compositing layer of the media that scatter most by an angle of this cosine.
+  int layer_of(const Wavelengths &w, float cosine) const;
   // A direction to scatter into; density is phase_value at the hero.
   Vec3 sample_phase(const Wavelengths &w, const Vec3 &forward, float pick, Vec2 u, float &density) const;
   bool scatters() const { return scattering.max() > 0; }
