@@ -5,7 +5,8 @@
     make bench ARGS="caustics"                 beside LuxCore and Mitsuba: pip install -r benchmarks/requirements.txt first
     make bench ARGS="cycles --repeats 5 --json build/bench.json"
 
-Sub-commands: `cycles` (time to Cycles' error at 64 samples), `caustics` (prism and brilliant, time to relative MSE 0.01), `speed` (rays, photons,
+Sub-commands: `cycles` (time to Cycles' error at 64 samples), `caustics` (prism and brilliant, time to relative MSE 0.01), `gems`
+(what dispersion costs, and its chroma), `speed` (rays, photons,
 building), `start` (import, enable), `rainbows` (Lorenz-Mie tables beside miepython and scattnlay). Run it on a machine that does nothing else.
 """
 
@@ -31,7 +32,7 @@ def _inside_blender(options) -> list[dict]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", nargs="*", help="cycles, caustics, speed, start, rainbows; all but caustics and rainbows when left out")
+    parser.add_argument("what", nargs="*", help="cycles, caustics, gems, speed, start, rainbows; cycles, speed and start when left out")
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--seconds", type=float, default=30.0, help="of each run of caustics")
     parser.add_argument("--reference-seconds", type=float, default=300.0, help="of the references of caustics, made once")
@@ -70,8 +71,13 @@ def main() -> None:
 
             found[what] = rainbows.measure()
             rainbows.report(found[what])
+        elif what == "gems":
+            import gems
+
+            found[what] = gems.measure(options.scenes, options.seconds, options.repeats, options.reference_seconds)
+            gems.report(found[what])
         else:
-            parser.error(f"there is no {what}: cycles, caustics, speed, start or rainbows")
+            parser.error(f"there is no {what}: cycles, caustics, gems, speed, start or rainbows")
     if options.json:
         options.json.parent.mkdir(parents=True, exist_ok=True)
         options.json.write_text(json.dumps(found, indent=1))
