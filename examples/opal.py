@@ -102,9 +102,10 @@ def fountain(place: tuple) -> None:
     spray = bpy.data.materials.new("Spray")
     spray.opal.kind = "MEDIUM"
     medium = spray.opal.medium
-    medium.extinction, medium.albedo = 0.9, (0.98, 0.98, 0.98)
+    medium.extinction, medium.albedo = 0.7, (0.98, 0.98, 0.98)
+    medium.density, medium.noise_scale, medium.noise_detail, medium.noise_contrast = "NOISE", 3.0, 4.0, 8.0
     medium.phase, medium.anisotropy = "HENYEY_GREENSTEIN", 0.3
-    rise = [(0, 15.4), (0.5, 15.2), (1.2, 14.2), (1.9, 12.0), (2.5, 8.6), (2.9, 4.6), (3.0, 1.4), (0, 1.0)]
+    rise = [(0, 16.6), (0.55, 16.2), (1.0, 15.0), (1.6, 12.0), (2.4, 8.6), (3.4, 5.0), (4.4, 1.4), (0, 1.0)]
     turned("Spray", list(reversed(rise)), spray, place)
 
 
@@ -189,7 +190,7 @@ def build() -> bpy.types.Scene:
     away = Vector((math.sin(SUN_AZIMUTH) * math.cos(SUN_HEIGHT), math.cos(SUN_AZIMUTH) * math.cos(SUN_HEIGHT), -math.sin(SUN_HEIGHT)))
     _scene.lamp("Sun", "SUN", -away, (0.0, 0.0, 0.0), 4.0, angle=math.radians(0.53))
     _scene.lamp("Lantern", "AREA", (-0.045, 0.105, 0.060), (0.0, 0.0, 0.0), 0.60, shape="DISK", size=0.004)
-    _scene.camera((0.001, -0.058, 0.042), (0.001, 0.0, 0.0315), 21.0, fstop=22.0, focus=(0.0, 0.0, 0.02))
+    _scene.camera((0.001, -0.058, 0.042), (0.001, 0.0, 0.0315), 21.0, fstop=64.0, focus=(0.0, 0.0, 0.02))
     scene.camera.data.clip_end = 1e4
     scene.render.resolution_x, scene.render.resolution_y = 900, 720
     scene.view_settings.exposure = 0.45
