@@ -88,12 +88,15 @@ def looking(origin, target, up=(0.0, 0.0, 1.0)) -> np.ndarray:
     return np.column_stack([*axes(origin, target, up), origin])
 
 
-def _ground(half: float) -> Mesh:
-    return Mesh(np.array([(-half, -half, 0), (half, -half, 0), (half, half, 0), (-half, half, 0)], float), np.array([(0, 1, 2), (0, 2, 3)]))
+def _ground(half: float, first: float | None = None) -> Mesh:
+    """A square about the origin; with ``first``, only what lies beyond that x."""
+    x = -half if first is None else first
+    return Mesh(np.array([(x, -half, 0), (half, -half, 0), (half, half, 0), (x, half, 0)], float), np.array([(0, 1, 2), (0, 2, 3)]))
 
 
 def prism() -> CausticScene:
-    """60° of dense flint (as SF11: n_D 1.7845, V_d 26) behind a slit, at minimum deviation; its spectrum falls on the floor."""
+    """60° of dense flint (as SF11: n_D 1.7845, V_d 26) behind a slit, at minimum deviation; its spectrum falls on the floor.
+    The floor begins behind the screen: lit by the lamp itself, it would send a haze through the slit."""
     side, depth, height = 0.4, 0.5, 0.9
     corners = np.array(
         [(x, y, height + z) for y in (-depth, depth) for x, z in ((-side / 2, 0), (side / 2, 0), (0, side * math.sqrt(0.75)))]
@@ -104,7 +107,7 @@ def prism() -> CausticScene:
     screen = np.array([(x, y, z) for y in ys for z in zs])
     faces = [(4 * i + j, 4 * i + j + 4, 4 * i + j + 5, 4 * i + j + 1) for i in range(3) for j in range(3) if (i, j) != (1, 1)]
     return CausticScene(
-        "prism", 1.7845, 0.01595, Mesh(corners, triangles), _ground(4.0),
+        "prism", 1.7845, 0.01595, Mesh(corners, triangles), _ground(4.0, x),
         Mesh(screen, np.array([t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))])),
         (-1.61, 0.0, 0.09), (-0.1, 0.0, 1.07), 0.04, (1.6, -1.2, 2.6), (1.6, 0.0, 0.0), 0.75,
     )  # fmt: skip

@@ -11,9 +11,11 @@ import numpy as np
 
 
 def relative_mse(image: np.ndarray, reference: np.ndarray, only: np.ndarray | None = None) -> float:
-    """Relative MSE of a picture; both (height, width, 3), ``only`` an optional (height, width) mask of the pixels that count."""
-    squares = ((image - reference) ** 2 / (reference**2 + 0.1 * reference.mean() ** 2)).mean(axis=-1)
-    squares = np.sort(squares[only] if only is not None else squares.ravel())
+    """Relative MSE of a picture; both (height, width, 3), ``only`` an optional (height, width) mask of the pixels
+    that count: the mean of the reference, too, is theirs, so that black ground does not decide."""
+    if only is not None:
+        image, reference = image[only], reference[only]
+    squares = np.sort(((image - reference) ** 2 / (reference**2 + 0.1 * reference.mean() ** 2)).mean(axis=-1).ravel())
     return float(squares[: max(1, int(len(squares) * 0.999))].mean())
 
 

@@ -7,6 +7,7 @@
 #include "film/pixel_filter.h"
 #include "integrator/layers.h"
 #include "media/segment.h"
+#include "photons/emission_guide.h"
 #include "photons/photon_map.h"
 #include "photons/volume_map.h"
 #include "scene/interior.h"
@@ -23,7 +24,12 @@ inline constexpr int kWavelengthSets = kPassWavelengths / kWavelengths;
 static_assert(kWavelengthSets * kWavelengths == kPassWavelengths);
 
 // Streams of the sampler: pixels count from 0, photons and passes sit above every pixel.
-enum Stream : uint32_t { kStreamPhotons = 0xf0000000u, kStreamPass = 0xf1000000u, kStreamVolumePhotons = 0xf2000000u };
+enum Stream : uint32_t {
+  kStreamPhotons = 0xf0000000u,
+  kStreamPass = 0xf1000000u,
+  kStreamVolumePhotons = 0xf2000000u,
+  kStreamPilot = 0xf3000000u
+};
 
 // Whether the film asks for any layer; paths keep account of them only then.
 inline bool keeps_layers(const opal_render_settings &settings) {
@@ -53,11 +59,12 @@ struct PassContext {
   const PixelFilter &filter;
   const int pass;
   std::array<Wavelengths, kPassWavelengths> wavelengths;
-  PhotonMap photons;       // on surfaces
-  VolumeMap volume;        // in media
-  MediumSet camera_media;  // what the camera is in
-  InteriorStack camera_interior;  // which gems it is in
-  Polariser polariser;            // before its lens
+  const EmissionGuide *guide = nullptr;  // where photons are worth sending, once that is known
+  PhotonMap photons;                     // on surfaces
+  VolumeMap volume;                      // in media
+  MediumSet camera_media;                // what the camera is in
+  InteriorStack camera_interior;         // which gems it is in
+  Polariser polariser;                   // before its lens
 };
 
 }  // namespace opal

@@ -5,6 +5,7 @@
 #include "film/spectral_film.h"
 #include "integrator/path_tracer.h"
 #include "integrator/path_class.h"
+#include "lights/light_tables.h"
 #include "photons/kernel_radius.h"
 
 #include <chrono>
@@ -14,6 +15,7 @@ namespace {
 
 constexpr int kTile = 16;
 constexpr uint32_t kPhotonChunk = 4096;
+constexpr uint32_t kPilotPhotons = 1u << 16;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -36,6 +38,25 @@ Render::Render(const Scene &scene, const opal_render_settings &settings)
 bool Render::wants_photons() const {
   if (settings_.photons_per_pass <= 0 || settings_.photons_carry == OPAL_CARRY_NONE) return false;
   return settings_.photons_carry != OPAL_CARRY_CAUSTICS || !scene_.casters.empty();
+}
+
+// Before the first pass: where photons are worth sending. The same for every pass, and for every machine that has a share of
+// them.
+bool Render::learn_emission() {
+  const auto start = std::chrono::steady_clock::now();
+  const uint32_t n = std::min(kPilotPhotons, uint32_t(settings_.photons_per_pass));
+  const PassContext pass(scene_, settings_, filter_, 0);
+  const PhotonTask task{n, kStreamPilot, true, scene_.any_medium};
+  std::vector<EmissionNumbers> numbers(n);
+  std::vector<float> use(n);
+  const bool complete = parallel_for(int64_t(n + 255) / 256, threads_, cancelled_, [&](int64_t i) {
+    const uint32_t first = uint32_t(i) * 256;
+    try_photons(pass, task, first, std::min(n, first + 256), numbers.data(), use.data());
+  });
+  if (!complete || cancelled_) return false;
+  guide_ = std::make_unique<EmissionGuide>(numbers, use, scene_.lights->to_casters.cdf);
+  statistics_.photon_seconds += seconds_since(start);
+  return true;
 }
 
 bool Render::run_task(const PassContext &pass, const PhotonTask &task, float from, float to, std::vector<PhotonChunk> &chunks) {
@@ -218,7 +239,11 @@ bool Render::render_pass(int number) {
   buffer.allocate(width(), height(), settings_.passes, settings_.spectral_bins);
   SplatSums splats;
   PassContext pass(scene_, settings_, filter_, number);
-  if (wants_photons() && !trace_photons_of(pass, buffer, splats)) return false;
+  if (wants_photons()) {
+    if (!guide_ && settings_.photons_carry == OPAL_CARRY_CAUSTICS && !learn_emission()) return false;
+    pass.guide = guide_.get();
+    if (!trace_photons_of(pass, buffer, splats)) return false;
+  }
   if (!trace_camera_of(pass, buffer, splats)) return false;
   const std::lock_guard lock(film_mutex_);
   film_.add(buffer, number);

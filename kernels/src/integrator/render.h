@@ -6,6 +6,7 @@
 #include "photons/photon_tracer.h"
 
 #include <atomic>
+#include <memory>
 #include <mutex>
 
 namespace opal {
@@ -30,6 +31,7 @@ class Render {
   opal_render_statistics statistics() const;
 
  private:
+  bool learn_emission();
   bool trace_photons_of(PassContext &pass, PassBuffer &buffer, SplatSums &splats);
   bool run_task(const PassContext &pass, const PhotonTask &task, float from, float to, std::vector<PhotonChunk> &chunks);
   void build_volume(PassContext &pass, std::vector<PhotonChunk> &chunks);
@@ -45,6 +47,7 @@ class Render {
   mutable std::mutex film_mutex_;
   Film film_;
   opal_render_statistics statistics_{};
+  std::unique_ptr<EmissionGuide> guide_;
   std::atomic<bool> cancelled_{false};
   std::atomic<float> progress_{0};
 };

@@ -11,6 +11,11 @@ namespace {
 
 constexpr int kMaxEvents = 32768;
 constexpr int kRouletteStart = 6;
+constexpr float kUnseenUse = 0.25f;  // of a photon that the camera does not see at first hand: glass and mirrors may show it
+
+EmissionNumbers emission_numbers(const Sampler &sampler) {
+  return {sampler.get2d(kDimEmissionLight), sampler.get2d(kDimEmissionPosition), sampler.get2d(kDimEmissionDirection)};
+}
 
 class PhotonPath {
  public:
@@ -53,12 +58,14 @@ class PhotonPath {
     const bool aimed = settings_.photons_carry == OPAL_CARRY_CAUSTICS;
     const float time = settings_.motion_blur ? sampler_.get1d(kDimTime) : 0.0f;
     EmissionSample &sample = emitted_;
-    if (!sample_emission(scene_, aimed ? scene_.casters : kEverywhere, sampler_.get2d(kDimEmissionLight),
-                         sampler_.get2d(kDimEmissionPosition), sampler_.get2d(kDimEmissionDirection), time, w_, sample))
+    EmissionNumbers u = emission_numbers(sampler_);
+    float density = 1;
+    if (pass_.guide) u = pass_.guide->warp(u, density);
+    if (!sample_emission(scene_, aimed ? scene_.casters : kEverywhere, u.pick, u.position, u.direction, time, w_, sample))
       return false;
     if (!source_emits_photons(scene_, settings_.photons_carry, sample.source)) return false;
     ray_ = sample.ray;
-    flux_ = sample.flux * (1.0f / float(task_.count));
+    flux_ = sample.flux * (1.0f / (float(task_.count) * density));
     start_ = flux_.max();
     media_ = scene_.any_medium ? media_at(scene_, ray_.origin) : MediumSet{};
     interior_ = interior_at(scene_, ray_.origin);
@@ -394,6 +401,18 @@ class PhotonPath {
 
 void trace_photons(const PassContext &pass, const PhotonTask &task, uint32_t first, uint32_t last, PhotonChunk &out) {
   for (uint32_t i = first; i < last; ++i) PhotonPath(pass, task, i, out).trace();
+}
+
+void try_photons(const PassContext &pass, const PhotonTask &task, uint32_t first, uint32_t last, EmissionNumbers *numbers,
+                 float *use) {
+  PhotonChunk left;
+  for (uint32_t i = first; i < last; ++i) {
+    left.photons.clear(), left.volume.clear(), left.beams.clear(), left.splats.clear(), left.spectral.clear();
+    PhotonPath(pass, task, i, left).trace();
+    numbers[i] = emission_numbers(Sampler(pass.settings.seed, task.stream + uint32_t(pass.pass), i));
+    const bool in_media = !left.volume.empty() || !left.beams.empty();
+    use[i] = float(left.splats.size()) + (in_media ? 1.0f : 0.0f) + kUnseenUse * float(left.photons.size());
+  }
 }
 
 }  // namespace opal

@@ -44,5 +44,8 @@ struct PhotonTask {
 
 // Traces photons first .. last-1 of a task.
 void trace_photons(const PassContext &pass, const PhotonTask &task, uint32_t first, uint32_t last, PhotonChunk &out);
+// Traces them to see what they were of use for, and leaves nothing: numbers[i] and use[i] of each photon i.
+void try_photons(const PassContext &pass, const PhotonTask &task, uint32_t first, uint32_t last, EmissionNumbers *numbers,
+                 float *use);
 
 }  // namespace opal
