@@ -36,7 +36,8 @@ def booth(cut, species: str, left: Mapping[str, object], right: Mapping[str, obj
     scene = _scene.empty()
     grey = _scene.matte("Booth", (0.25, 0.25, 0.25))
     total = 2 * WIDTH + WALL
-    _scene.box("Floor", (-total, -0.05, -0.002), (total, DEPTH, -2e-6), grey)
+    floor = [(-total, -0.05, 0.0), (total, -0.05, 0.0), (total, DEPTH, 0.0), (-total, DEPTH, 0.0)]
+    _scene.mesh("Floor", floor, [(0, 1, 2, 3)], grey)
     _scene.box("Back", (-total, DEPTH, 0.0), (total, DEPTH + WALL, HEIGHT), grey)
     _scene.box("Divider", (-0.5 * WALL, -0.05, 0.0), (0.5 * WALL, DEPTH, 2 * HEIGHT), grey)
     material = _scene.gem(species.title(), species)
