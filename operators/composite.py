@@ -65,7 +65,7 @@ class OPAL_OT_composite(bpy.types.Operator, WritesFile):
             rendered = render_scene.opal(context, layers.passes(chosen))
             with cycles_base.replaced(context.scene, dim_camera=self.attenuation == "BASE"):
                 base = render_scene.cycles(context, **self._cycles_settings(context.scene))
-            over = layers.pictures(rendered.films, chosen)
+            over = layers.pictures(rendered.films, chosen, context.scene.render.film_transparent)
             if base.picture.shape != rendered.picture.shape:
                 raise render_scene.RenderFailed("Cycles and Opal gave pictures of different sizes: turn Crop to Render Region on.")
             result = layers.composite(base.picture, over)

@@ -31,17 +31,28 @@ def passes(chosen: Collection[str]) -> list[Any]:
     """The films that the chosen layers need, beside Combined."""
     from opal_kernels.descriptions import Pass
 
-    kept = [Pass[f"LAYER_{name}"] for name in ADDED if name in chosen]
-    return kept + ([Pass.LAYER_BASE, Pass.LAYER_BEHIND] if "TRANSMITTANCE" in chosen else [])
+    through = "TRANSMITTANCE" in chosen
+    kept = [Pass[f"LAYER_{name}"] for name in ADDED if name in chosen or (through and name in {"MEDIA", "RAINBOW"})]
+    return kept + ([Pass.LAYER_BASE, Pass.LAYER_BEHIND] if through else [])
 
 
-def pictures(films: Mapping[Any, np.ndarray], chosen: Collection[str]) -> dict[str, np.ndarray]:
-    """The chosen layers by identifier, (height, width, 4) float32, premultiplied; the transmittance is no light."""
+def pictures(films: Mapping[Any, np.ndarray], chosen: Collection[str], transparent: bool) -> dict[str, np.ndarray]:
+    """The chosen layers by identifier, (height, width, 4) float32, premultiplied; the transmittance is no light.
+
+    Parameters
+    ----------
+    transparent : bool
+        Whether the film is transparent; if not, the alphas of base and media add up to 1 in every pixel.
+    """
     from opal_kernels.descriptions import Pass
 
     found = {name: films[Pass[f"LAYER_{name}"]] for name in ADDED if name in chosen}
     if "TRANSMITTANCE" in chosen:
-        found["TRANSMITTANCE"] = transmittance(films[Pass.LAYER_BASE], films[Pass.LAYER_BEHIND])
+        dimmed = films[Pass.LAYER_BASE]
+        found["TRANSMITTANCE"] = through = transmittance(dimmed, films[Pass.LAYER_BEHIND])
+        if not transparent:
+            seen = dimmed[..., 3] + films[Pass.LAYER_MEDIA][..., 3] + films[Pass.LAYER_RAINBOW][..., 3]
+            through[..., 3] = np.divide(dimmed[..., 3], seen, out=np.zeros_like(seen), where=seen > 0)
     if "FULL" in chosen:
         found["FULL"] = films[Pass.COMBINED]
     return found

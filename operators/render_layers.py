@@ -80,7 +80,7 @@ class OPAL_OT_render_layers(bpy.types.Operator, WritesFile):
             return {"CANCELLED"}
         try:
             rendered = render_scene.opal(context, layers.passes(self.layers))
-            found = layers.pictures(rendered.films, self.layers)
+            found = layers.pictures(rendered.films, self.layers, context.scene.render.film_transparent)
             for identifier, pixels in found.items():
                 float_images.put(image_name(identifier), pixels)
             told = self.write(context, {layers.LABELS[name].replace(" ", ""): pixels for name, pixels in found.items()})

@@ -749,11 +749,22 @@ class CameraPath {
 
   // Transmittance of the media that vary between the ray's origin and t_end, by quadrature: it only weighs what is measured.
   Spectrum marched_transmittance(float t_end) const {
-    constexpr int kSteps = 64;
+    constexpr int kSteps = 128;
     const RayMedia media(scene_, media_, w_, ray_);
     Spectrum depth(0.0f);
-    for (int i = 0; i < kSteps; ++i) depth += media.at((float(i) + 0.5f) * t_end / kSteps).replaced;
-    return transmittance_over(depth, t_end / kSteps);
+    if (std::isfinite(t_end)) {
+      for (int i = 0; i < kSteps; ++i) depth += media.at((float(i) + 0.5f) * t_end / kSteps).replaced;
+      return transmittance_over(depth, t_end / kSteps);
+    }
+    // To infinity in steps that grow, from centimetres to a thousand kilometres.
+    constexpr float kFirst = 1e-2f, kGrowth = 1.155f;
+    float from = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      const float to = kFirst * std::pow(kGrowth, float(i));
+      depth += media.at(0.5f * (from + to)).replaced * (to - from);
+      from = to;
+    }
+    return transmittance_over(depth, 1);
   }
 
   void add_to_layers(const Spectrum &radiance, const Vec3 &rgb) {
