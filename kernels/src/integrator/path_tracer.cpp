@@ -274,7 +274,10 @@ class CameraPath {
     if (bounces_ < kRouletteStart) return;
     const float q = clamp((throughput_.max() * eta_scale_) / path_pdf_.average(), 0.0f, 1.0f);
     // Where nothing is lost, a small chance to stop keeps the longest chains finite.
-    const float survive = bounces_ > 256 ? std::min(q, rough_in_medium_ ? 0.999f : 0.98f) : q;
+    // In the world's own medium, which has no end, paths that absorb nothing would wander away for ever.
+    const bool endless = media_.count() == 1 && media_[0].instance == ~0u && rough_in_medium_;
+    const float most = endless && bounces_ > 32 ? 0.95f : bounces_ > 256 ? (rough_in_medium_ ? 0.999f : 0.98f) : 1.0f;
+    const float survive = std::min(q, most);
     if (!(u < survive)) {
       alive_ = false;
       return;
