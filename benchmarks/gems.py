@@ -34,12 +34,16 @@ LUMINANCE = np.array([0.2126729, 0.7151522, 0.0721750])
 
 
 def errors(image: np.ndarray, reference: np.ndarray, counted: np.ndarray) -> tuple[float, float]:
-    """Relative MSE of luminance and of chroma (what is left of RGB without it), as `error.relative_mse` counts."""
+    """Relative MSE of luminance and of chroma, as `error.relative_mse` counts.
+
+    Chroma is what is left of RGB without luminance; it is relative to the pixel's RGB, since the colours of a spectrum have many times
+    more of it than of luminance.
+    """
     y, y_reference = image @ LUMINANCE, reference @ LUMINANCE
     scale = y_reference**2 + 0.1 * y_reference[counted].mean() ** 2
     of_luminance = (y - y_reference) ** 2 / scale
     chroma = (image - y[..., None]) - (reference - y_reference[..., None])
-    of_chroma = (chroma**2).mean(axis=-1) / scale
+    of_chroma = (chroma**2).mean(axis=-1) / ((reference**2).mean(axis=-1) + 0.1 * reference[counted].mean() ** 2)
     n = max(1, int(counted.sum() * 0.999))
     return tuple(float(np.sort(e[counted])[:n].mean()) for e in (of_luminance, of_chroma))
 
