@@ -67,6 +67,8 @@ def test_saving_and_loading_keeps_every_setting(tmp_path):
             value = getattr(group, prop.identifier)
             if prop.type == "POINTER":
                 found[prop.identifier] = settings_of(value)
+            elif prop.type == "COLLECTION":
+                found[prop.identifier] = [settings_of(item) for item in value]
             else:
                 found[prop.identifier] = tuple(value) if getattr(prop, "is_array", False) else value
         return found
