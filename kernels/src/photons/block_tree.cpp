@@ -104,6 +104,7 @@ std::vector<uint32_t> BlockTree::build(size_t n, const std::function<Bounds(size
     size_t boxes = (last(s) - first(s) + kWidth - 1) / kWidth;
     while (boxes > 0) {
       const size_t nodes = (boxes + kWidth - 1) / kWidth;
+      boxes_[s][levels_[s]] = boxes;
       level_start_[s][levels_[s]++] = total;
       total += nodes;
       boxes = nodes > 1 ? nodes : 0;

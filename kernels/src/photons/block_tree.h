@@ -89,6 +89,9 @@ class BlockTree {
       const Node &node = nodes_[level_start_[set][entry.level] + entry.node];
       uint32_t met = 0;
       for (int i = 0; i < kWidth; ++i) met |= uint32_t(meets(node, i)) << i;
+      // Children that do not exist have inverted boxes, which a slab test takes for everything.
+      const size_t children = boxes_[set][entry.level] - size_t(entry.node) * kWidth;
+      if (children < kWidth) met &= (1u << children) - 1;
       for (int i = kWidth; i-- > 0;) {
         if (!(met >> i & 1)) continue;
         const uint32_t child = entry.node * kWidth + uint32_t(i);
@@ -107,6 +110,7 @@ class BlockTree {
   Bounds bounds_[kSets];
   int levels_[kSets] = {};
   size_t level_start_[kSets][kMostLevels] = {};
+  size_t boxes_[kSets][kMostLevels] = {};  // children of a level's nodes, in all
 };
 
 }  // namespace opal
