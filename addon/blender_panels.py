@@ -9,6 +9,7 @@ from typing import Any
 import bpy
 
 _ENGINE = "OPAL"
+_EXTENSION = __package__.rpartition(".")[0]
 
 # Panels for every engine that Opal replaces or cannot honour.
 _LEFT_OUT = {
@@ -54,5 +55,5 @@ def register() -> None:
 
 def unregister() -> None:
     for panel in _panels():
-        if panel.COMPAT_ENGINES != {_ENGINE}:  # Opal's own keep it
+        if not panel.__module__.startswith(_EXTENSION):  # Opal's own keep it
             panel.COMPAT_ENGINES.discard(_ENGINE)

@@ -39,8 +39,12 @@ class OpalRenderEngine(bpy.types.RenderEngine):
 
     def render(self, depsgraph: Any) -> None:
         """A final render or a material preview, of one view layer."""
-        from .final_render import render
-
+        try:
+            from .final_render import render
+        except Exception as error:  # Blender 4.5 crashes when it writes the picture of an engine that raised
+            self.report({"ERROR"}, f"Opal's kernels do not load: {error}")
+            self.error_set(f"Opal's kernels do not load: {error}")
+            return
         render(self, depsgraph)
 
     def view_update(self, context: Any, depsgraph: Any) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import threading
 import time
+import traceback
 from typing import Any
 
 import numpy as np
@@ -39,8 +40,15 @@ def render(engine: Any, depsgraph: Any) -> None:
         _FinalRender(engine, depsgraph, found).run()
     except Stopped:
         return
-    except (OpalError, ValueError, MemoryError) as error:
-        sentence = str(error) or "There is not enough memory to render this scene."
+    except Exception as error:
+        # Blender 4.5 crashes when it writes the picture of an engine that raised.
+        if isinstance(error, MemoryError):
+            sentence = str(error) or "There is not enough memory to render this scene."
+        elif isinstance(error, OpalError | ValueError):
+            sentence = str(error)
+        else:
+            traceback.print_exc()
+            sentence = f"Opal failed on this scene ({type(error).__name__}: {error}); the console has the details."
         if (capture := captures.current()) is not None:
             capture.failure = sentence
         engine.report({"ERROR"}, sentence)

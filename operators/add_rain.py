@@ -9,7 +9,6 @@ import bpy
 from bpy.props import EnumProperty, FloatProperty
 
 from ..addon import rainbow_presets
-from ..addon.settings import frame_of
 
 
 class OPAL_OT_add_rain(bpy.types.Operator):
@@ -103,6 +102,8 @@ def _camera(scene: bpy.types.Scene) -> tuple[Any, Any]:
     camera = scene.camera
     if camera is None or camera.type != "CAMERA":
         return (0.0, 0.0, 1.7), None
+    from ..addon.settings import frame_of
+
     frame = frame_of(scene.render)
     view = sight.View.of(camera_from_object(camera, scene, frame.width, frame.height))
     return tuple(camera.matrix_world.translation), view
