@@ -30,7 +30,7 @@ STONES = (
     ("AMETHYST", "PEAR", "main", 0.0072, (-0.0165, -0.0050), -95),
     ("CITRINE", "TRILLION", "main", 0.0056, (0.0010, -0.0090), -110),
 )
-TIME_LIMIT = 150.0
+TIME_LIMIT = 130.0
 """Of the render, s."""
 
 
@@ -192,7 +192,7 @@ def build() -> bpy.types.Scene:
     _scene.lamp("Lantern", "AREA", (-0.045, 0.105, 0.060), (0.0, 0.0, 0.0), 0.60, shape="DISK", size=0.004)
     _scene.camera((0.001, -0.058, 0.042), (0.001, 0.0, 0.0315), 21.0, fstop=64.0, focus=(0.0, 0.0, 0.02))
     scene.camera.data.clip_end = 1e4
-    scene.render.resolution_x, scene.render.resolution_y = 900, 720
+    scene.render.resolution_x, scene.render.resolution_y = 720, 576
     scene.view_settings.exposure = 0.45
     _scene.limit(scene, 192, 400_000, TIME_LIMIT)
     return scene
