@@ -49,13 +49,13 @@ class OpalRenderEngine(bpy.types.RenderEngine):
 
     def view_update(self, context: Any, depsgraph: Any) -> None:
         """Something in the scene changed."""
-        self._view(context).update(context, depsgraph)
+        self._view().update(depsgraph)
 
     def view_draw(self, context: Any, depsgraph: Any) -> None:
         """Draws what the viewport's render has so far."""
-        self._view(context).draw(context, depsgraph)
+        self._view().draw(context, depsgraph)
 
-    def _view(self, _context: Any) -> Any:
+    def _view(self) -> Any:
         if self._viewport is None:
             from .viewport import Viewport
 

@@ -3,8 +3,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
 from bpy.props import EnumProperty, FloatProperty, PointerProperty
+
+
+def _tag(settings: Any, _context: Any) -> None:
+    """Tells Blender that the lamp is another, also where a script set it, so that a rendered view follows."""
+    settings.id_data.update_tag()
 
 
 class OpalLightProperties(bpy.types.PropertyGroup):
@@ -26,6 +33,7 @@ class OpalLightProperties(bpy.types.PropertyGroup):
             ("LASER", "Laser", "A single wavelength"),
         ),
         default="COLOR",
+        update=_tag,
     )
     temperature: FloatProperty(
         name="Temperature",
@@ -36,6 +44,7 @@ class OpalLightProperties(bpy.types.PropertyGroup):
         max=40_000.0,
         precision=0,
         step=10_000,
+        update=_tag,
     )
     laser_wavelength: FloatProperty(
         name="Wavelength",
@@ -45,6 +54,7 @@ class OpalLightProperties(bpy.types.PropertyGroup):
         max=780.0,
         precision=1,
         step=100,
+        update=_tag,
     )
 
 

@@ -38,6 +38,10 @@ class Report:
     def add(self, owner: str, message: str) -> None:
         self.entries[Entry(owner, message)] = None
 
+    def forget(self, owner: str) -> None:
+        """Takes back what was said of an owner, which is read once more."""
+        self.entries = {entry: None for entry in self.entries if entry.owner != owner}
+
     def summary(self, limit: int = 3) -> str:
         """One line for Blender's status bar; empty where there is nothing to say."""
         lines = [str(entry) for entry in self.entries]

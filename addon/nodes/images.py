@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from ..identity import key_of
 from .context import Problem
 
 TRANSFER_LINEAR, TRANSFER_SRGB = 0, 1
@@ -38,18 +39,20 @@ class Images:
     def __init__(self, add_image: Callable[[np.ndarray, int], int], note: Callable[[Problem], None]) -> None:
         self._add, self._note = add_image, note
         self._numbers: dict[tuple, int] = {}
+        self.any_frames = False  # whether a sequence or a film was asked for
 
     def index(self, image: Any, image_user: Any = None) -> int:
         """The number of an image; -1 where it cannot be read."""
         if image.source in _READ_AS_LOADED:
+            self.any_frames = True
             self._note(Problem(image.name, "", "Sequences and films show the frame that Blender has loaded."))
-        return self._number((image.as_pointer(),), image, lambda: loaded_pixels(image))
+        return self._number((key_of(image),), image, lambda: loaded_pixels(image))
 
     def tiles(self, image: Any) -> list[tuple[int, int]]:
         """(UDIM number, kernel number) of the tiles that can be read."""
         found = []
         for position, tile in enumerate(image.tiles):
-            key = (image.as_pointer(), tile.number)
+            key = (key_of(image), tile.number)
             number = self._number(key, image, lambda p=position, t=tile.number: tile_pixels(image, p, t))
             if number >= 0:
                 found.append((tile.number, number))

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import Any
 
 from opal_kernels import gem as gems
@@ -11,10 +13,37 @@ from opal_kernels.optics import species
 from opal_kernels.scene import Scene
 
 from .. import presets
+from ..identity import key_of
 from ..nodes import compile_material, compile_missing, compile_volume, default_volume, has_surface, has_volume
 from ..report import Report
 from . import rainbow
+from .spectra import Spectra
 from .volumes import Body, Volumes
+
+
+class NeedsRebuild(Exception):
+    """A change that cannot be made in a scene that stands; it has to be built anew."""
+
+
+@dataclass
+class _Known:
+    """A material that the kernels have.
+
+    Attributes
+    ----------
+    content : tuple
+        All that was handed over; the same again changes nothing.
+    in_place : bool
+        Whether it can be replaced where it is: a surface, or a gem without a medium.
+    spectra : list of int
+        To be given back when it is replaced.
+    """
+
+    number: int = -1
+    kind: str = ""
+    content: tuple = ()
+    in_place: bool = True
+    spectra: list[int] = field(default_factory=list)
 
 
 class Materials:
@@ -23,22 +52,26 @@ class Materials:
     Parameters
     ----------
     scene : Scene
-        Takes the materials, their spectra and images.
+        Takes the materials and their images.
     context : NodeContext
         Handed to the node readers.
     report : Report
         Told what the node readers could not keep.
     rain : Rain
         Makes media of rainbows.
+    spectra : Spectra
+        Takes the gems' tables.
     absorption_scale : float
         Factor on the absorption of gems: below 1 they look like smaller stones.
     """
 
-    def __init__(self, scene: Scene, context: Any, report: Report, rain: rainbow.Rain, absorption_scale: float = 1.0) -> None:
-        self._scene, self._context, self._report, self._rain = scene, context, report, rain
+    def __init__(
+        self, scene: Scene, context: Any, report: Report, rain: rainbow.Rain, spectra: Spectra, absorption_scale: float = 1.0
+    ) -> None:
+        self._scene, self._context, self._report, self._rain, self._spectra = scene, context, report, rain, spectra
         self._absorption_scale = absorption_scale
         self.volumes = Volumes(scene, report.add)
-        self._numbers: dict[tuple[int, int, bool], int] = {}
+        self._known: dict[tuple[Any, int, bool], _Known] = {}
 
     def number(self, material: Any, body: Body | None = None) -> int:
         """The kernels' number of an evaluated material; None gives what Blender shows without one.
@@ -49,42 +82,83 @@ class Materials:
         body : Body, optional
             What the material covers, where it matters (`fills`): its grids and box, and whether it is closed.
         """
-        key = (material.as_pointer() if material is not None else 0, body.key if body is not None else 0, body is None or body.closed)
-        if key not in self._numbers:
-            self._numbers[key] = self._add(material, body)
-        return self._numbers[key]
+        key = (key_of(material), body.key if body is not None else 0, body is None or body.closed)
+        if key not in self._known:
+            known = _Known(kind=material.opal.kind if material is not None else "", in_place=body is None and not fills(material))
+            description = self._describe(material, body, known)
+            known.number = self._scene.add_material(**description)
+            self._known[key] = known
+        return self._known[key].number
 
-    def _add(self, material: Any, body: Body | None) -> int:
+    def refresh(self, material: Any, before_change: Callable[[], None]) -> bool:
+        """Reads an evaluated material once more.
+
+        Parameters
+        ----------
+        material : bpy.types.Material
+        before_change : callable
+            Called before the kernels' scene is touched.
+
+        Returns
+        -------
+        bool
+            Whether it has become another.
+
+        Raises
+        ------
+        NeedsRebuild
+            If it cannot be replaced where it is: it fills something, or has become another kind.
+        """
+        changed = False
+        mine = key_of(material)
+        for old in [known for key, known in self._known.items() if key[0] == mine]:
+            if not old.in_place or fills(material) or material.opal.kind != old.kind:
+                raise NeedsRebuild
+            if old.kind == "GEM" and _gem_content(material.opal.gem, self._absorption_scale) == old.content:
+                continue
+            self._report.forget(material.name)
+            new = _Known(old.number, old.kind)
+            description = self._describe(material, None, new)
+            if new.content != old.content:
+                before_change()
+                self._scene.update_material(old.number, **description)
+                changed = True
+            self._spectra.release(old.spectra)
+            old.content, old.spectra = new.content, new.spectra
+        return changed
+
+    def _describe(self, material: Any, body: Body | None, known: _Known) -> dict[str, Any]:
+        """Arguments of `Scene.add_material`."""
         is_volume = body is not None and body.is_volume
         if material is None:
-            return self._add_default_volume(body) if is_volume else self._add_program(compile_missing(self._context))
+            return self._default_volume(body) if is_volume else self._program(compile_missing(self._context), known)
         settings = material.opal
         if body is not None and not body.closed:
             self._report.add(body.name, "The mesh is open, so it cannot hold a medium; only its surface is rendered.")
             body = None
             if settings.kind != "GEM":
-                return self._add_program(compile_material(material, self._context))
+                return self._program(compile_material(material, self._context), known)
         if settings.kind == "GEM":
-            return self._add_gem(material.name, settings, body)
+            return self._gem(material.name, settings, body, known)
         if settings.kind in {"MEDIUM", "RAINBOW"}:
-            return self._add_filling(material.name, settings, body or Body(material.name))
-        medium = self._add_volume_nodes(material, body) if body is not None else -1
+            return self._filling(material.name, settings, body or Body(material.name))
+        medium = self._volume_nodes(material, body) if body is not None else -1
         if is_volume or (medium >= 0 and not has_surface(material)):
-            return self._scene.add_material(flags=MaterialFlag.NO_SURFACE, medium=medium)
-        return self._add_program(compile_material(material, self._context), medium)
+            return {"flags": MaterialFlag.NO_SURFACE, "medium": medium}
+        return self._program(compile_material(material, self._context), known, medium)
 
-    def _add_default_volume(self, body: Body) -> int:
+    def _default_volume(self, body: Body) -> dict[str, Any]:
         medium = self.volumes.add_compiled(default_volume(), body) if "density" in body.source.names else -1
-        return self._scene.add_material(flags=MaterialFlag.NO_SURFACE, medium=medium)
+        return {"flags": MaterialFlag.NO_SURFACE, "medium": medium}
 
-    def _add_volume_nodes(self, material: Any, body: Body) -> int:
+    def _volume_nodes(self, material: Any, body: Body) -> int:
         compiled = compile_volume(material, self._context, body.source.names if body.source is not None else None)
         if compiled is None:
             return -1
         self._context.note(compiled.problems)
         return self.volumes.add_compiled(compiled, body)
 
-    def _add_program(self, compiled: Any, medium: int = -1) -> int:
+    def _program(self, compiled: Any, known: _Known, medium: int = -1) -> dict[str, Any]:
         self._context.note(compiled.problems)
         self._context.program_compiled(compiled.code)
         flags = MaterialFlag(0)
@@ -94,9 +168,10 @@ class Materials:
             flags |= MaterialFlag.EMISSIVE
         if compiled.transparent_shadow:
             flags |= MaterialFlag.TRANSPARENT_SHADOW
-        return self._scene.add_material(compiled, flags=flags, medium=medium)
+        known.content = (*program_content(compiled), int(flags))
+        return {"program": compiled, "flags": flags, "medium": medium}
 
-    def _add_filling(self, name: str, settings: Any, body: Body) -> int:
+    def _filling(self, name: str, settings: Any, body: Body) -> dict[str, Any]:
         try:
             if settings.kind == "MEDIUM":
                 medium = self.volumes.add_medium(settings.medium, body)
@@ -105,27 +180,57 @@ class Materials:
         except ValueError as error:
             self._report.add(name, f"{error} The body is rendered empty.")
             medium = -1
-        return self._scene.add_material(flags=MaterialFlag.NO_SURFACE, medium=medium)
+        return {"flags": MaterialFlag.NO_SURFACE, "medium": medium}
 
-    def _add_gem(self, name: str, settings: Any, body: Body | None) -> int:
+    def _gem(self, name: str, settings: Any, body: Body | None, known: _Known) -> dict[str, Any]:
         gem = settings.gem
-        index, absorption = gem_spectra(gem)
-        if sentence := gems.refusal(presets.settings_of(gem)) if gem.species == presets.CUSTOM else "":
-            self._report.add(name, sentence + " The gem is rendered with an index of 1.5.")
-            index[:] = 1.5
-        if sentence := gems.absorption_refusal(presets.settings_of(gem)) if gem.species == presets.CUSTOM else "":
-            self._report.add(name, sentence + " The gem is rendered clear.")
-        if absorption is not None:
-            absorption = absorption * self._absorption_scale
+        for sentence in _gem_refusals(gem):
+            self._report.add(name, sentence)
+        index, absorption = _gem_tables(gem, self._absorption_scale)
+        known.spectra = [self._spectra.take(table) for table in (index, absorption) if table is not None]
+        known.content = _gem_content(gem, self._absorption_scale)
         description = Gem(
-            index_spectrum=self._scene.add_spectrum(index),
-            absorption_spectrum=-1 if absorption is None else self._scene.add_spectrum(absorption),
+            index_spectrum=known.spectra[0],
+            absorption_spectrum=-1 if absorption is None else known.spectra[1],
             roughness=gem.roughness,
             fresnel=Fresnel[gem.fresnel],
             priority=gem.priority,
         )
         medium = self.volumes.add_medium(settings.medium, body) if settings.use_medium and body is not None else -1
-        return self._scene.add_material(gem=description, flags=MaterialFlag.CASTER, medium=medium)
+        return {"gem": description, "flags": MaterialFlag.CASTER, "medium": medium}
+
+
+def program_content(compiled: Any) -> tuple:
+    """What makes two programs the same."""
+    return compiled.code.tobytes(), compiled.constants.tobytes(), compiled.n_registers
+
+
+def _gem_refusals(gem: Any) -> list[str]:
+    """Sentences on numbers that no gem can have."""
+    if gem.species != presets.CUSTOM:
+        return []
+    settings = presets.settings_of(gem)
+    sentences = []
+    if sentence := gems.refusal(settings):
+        sentences.append(sentence + " The gem is rendered with an index of 1.5.")
+    if sentence := gems.absorption_refusal(settings):
+        sentences.append(sentence + " The gem is rendered clear.")
+    return sentences
+
+
+def _gem_tables(gem: Any, absorption_scale: float) -> tuple[Any, Any]:
+    """`gem_spectra` as rendered: an index of 1.5 for one that cannot be, and the absorption scaled."""
+    index, absorption = gem_spectra(gem)
+    if gem.species == presets.CUSTOM and gems.refusal(presets.settings_of(gem)):
+        index[:] = 1.5
+    return index, None if absorption is None else absorption * absorption_scale
+
+
+def _gem_content(gem: Any, absorption_scale: float) -> tuple:
+    """What makes two gems the same."""
+    index, absorption = _gem_tables(gem, absorption_scale)
+    tables = index.tobytes(), None if absorption is None else absorption.tobytes()
+    return (*tables, gem.roughness, gem.fresnel, gem.priority)
 
 
 def fills(material: Any) -> bool:

@@ -7,7 +7,7 @@ from meshes.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -37,11 +37,13 @@ class NodeContext:
 
     def __init__(self, scene: Scene, report: Report) -> None:
         self._report = report
-        self._images = Images(scene.add_image, lambda problem: self.note([problem]))
+        self._scene = scene
+        self._images = Images(self._add_image, lambda problem: self.note([problem]))
         self._attributes: dict[str, int] = {}
         self._tangent_uv: str | None = None
         self._generated = False
         self.depsgraph: Any = None
+        self.before_change: Callable[[], None] = lambda: None  # called before the kernel scene takes something
 
     def begin(self, depsgraph: Any) -> None:
         """Sets the depsgraph that materials are read from."""
@@ -58,6 +60,15 @@ class NodeContext:
     def image_index(self, image: Any, image_user: Any) -> int:
         """The number of an image; -1 where it cannot be read."""
         return self._images.index(image, image_user)
+
+    def _add_image(self, pixels: np.ndarray, transfer: int) -> int:
+        self.before_change()
+        return self._scene.add_image(pixels, transfer)
+
+    @property
+    def any_frames(self) -> bool:
+        """Whether an image shows another picture at another frame."""
+        return self._images.any_frames
 
     def image_tiles(self, image: Any) -> list[tuple[int, int]]:
         """(UDIM number, image number) of a tiled image's readable tiles."""

@@ -12,17 +12,18 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from opal_kernels.descriptions import Attribute, Camera, Light
+from opal_kernels.descriptions import Attribute, Camera, Light, World
 from opal_kernels.scene import Scene
 
 from ..report import Report
 from .gem_meshes import mend_gem_mesh
-from .instances import Group, collect
+from .instances import Group, Visible, collect
 from .lights import LightLinks, light_from_object, out_of_range
 from .materials import Materials, fills
 from .meshes import MeshArrays, MeshNeeds, box_mesh, box_of, is_closed, read_mesh
 from .node_context import NodeContext
 from .rainbow import Rain
+from .spectra import Spectra
 from .volumes import Body
 from .world import add_world_medium, world_from_scene
 
@@ -43,6 +44,9 @@ class Snapshot:
     meshes: dict[int, MeshArrays | None] = field(default_factory=dict)  # by the address the mesh had
     mesh_of_group: list[int] = field(default_factory=list)
     lights: list[tuple[Light, str]] = field(default_factory=list)
+    bodies: list[Body | None] = field(default_factory=list)  # what a group's materials fill
+    world: World | None = None
+    first_instances: list[int] = field(default_factory=list)  # the kernels' number of each group's first, -1: left out
 
 
 def _ignore_stage(_text: str, _done: float = 0.0) -> None:
@@ -73,22 +77,59 @@ class SceneBuilder:
     ) -> None:
         self._report, self._stage = report, stage
         self.scene = Scene(threads=threads)
-        self._lamp_spectra: dict[bytes, int] = {}
-        self._context = NodeContext(self.scene, report)
+        self.spectra = Spectra(self.scene)
+        self._lamp_spectra: list[int] = []
+        self.context = NodeContext(self.scene, report)
         self.rain = Rain(self.scene, report, stage)
-        self._materials = Materials(self.scene, self._context, report, self.rain, _PREVIEW_ABSORPTION if preview else 1.0)
+        self.materials = Materials(self.scene, self.context, report, self.rain, self.spectra, _PREVIEW_ABSORPTION if preview else 1.0)
 
     def read(self, depsgraph: Any) -> Snapshot:
         """Reads everything that is seen: instances, lamps, world, materials and meshes."""
         self._stage("Reading objects")
         snapshot = Snapshot()
-        self._context.begin(depsgraph)
-        links = LightLinks((o for o in depsgraph.objects if o.type == "LIGHT"), self._report.add)
+        visible = self.read_objects(depsgraph, snapshot)
+        self._stage("Reading materials")
+        self.rain.begin([light for light, _ in snapshot.lights])
+        world = world_of(depsgraph)
+        snapshot.world = self.read_world(world)
+        if snapshot.world is not None:
+            self.scene.set_world(snapshot.world)
+        self._fill_world(world)
+        for group in visible.groups:
+            body = self._body(group)
+            snapshot.materials.append(
+                [self.materials.number(m, body if fills(m) or group.grids is not None else None) for m in group.materials or (None,)]
+            )
+            snapshot.bodies.append(body)
 
+        for name, sentence in visible.problems:  # grids have been read by now
+            self._report.add(name, sentence)
+
+        needs = self.context.mesh_needs()
+        for count, group in enumerate(visible.groups):
+            self._stage(f"Reading meshes, {count + 1} of {len(visible.groups)}")
+            snapshot.mesh_of_group.append(self._read_mesh(group, needs, snapshot, snapshot.bodies[count]))
+        snapshot.groups = visible.groups
+        return snapshot
+
+    def before_change(self, call: Callable[[], None]) -> None:
+        """Sets what reading once more calls before it adds an image or a spectrum to the kernels' scene."""
+        self.context.before_change = self.spectra.before_change = call
+
+    def read_objects(self, depsgraph: Any, snapshot: Snapshot) -> Visible:
+        """Finds what is seen, and reads the lamps into the snapshot."""
+        self.context.begin(depsgraph)
+        links = LightLinks((o for o in depsgraph.objects if o.type == "LIGHT"), self._report.add)
         originals: list[Any] = []
+        before = self._lamp_spectra
+        self._lamp_spectra = []
+
+        def take_spectrum(values: np.ndarray) -> int:
+            self._lamp_spectra.append(self.spectra.take(values))
+            return self._lamp_spectra[-1]
 
         def on_light(obj: Any, matrix: np.ndarray) -> None:
-            light = light_from_object(obj, matrix=matrix, context=self._context, report=self._report.add, add_spectrum=self._lamp_spectrum)
+            light = light_from_object(obj, matrix=matrix, context=self.context, report=self._report.add, add_spectrum=take_spectrum)
             if sentence := out_of_range(obj.data, *depsgraph.scene_eval.opal.wavelengths):
                 self._report.add(obj.original.name, sentence)
             if light is not None:
@@ -98,31 +139,14 @@ class SceneBuilder:
         visible = collect(depsgraph, on_light, links.group)
         for (light, _), lamp in zip(snapshot.lights, originals, strict=True):
             light.receivers = links.receivers(lamp)
-        self._stage("Reading materials")
-        self.rain.begin([light for light, _ in snapshot.lights])
-        override = getattr(depsgraph.view_layer_eval, "world_override", None)  # since Blender 5
-        world, problems = world_from_scene(override or depsgraph.scene_eval.world, self._context)
-        self._context.note(problems)
-        if world is not None:
-            self.scene.set_world(world)
-        self._fill_world(override or depsgraph.scene_eval.world)
-        bodies: list[Body | None] = []
-        for group in visible.groups:
-            body = self._body(group)
-            snapshot.materials.append(
-                [self._materials.number(m, body if fills(m) or group.grids is not None else None) for m in group.materials or (None,)]
-            )
-            bodies.append(body)
+        self.spectra.release(before)
+        return visible
 
-        for name, sentence in visible.problems:  # grids have been read by now
-            self._report.add(name, sentence)
-
-        needs = self._context.mesh_needs()
-        for count, group in enumerate(visible.groups):
-            self._stage(f"Reading meshes, {count + 1} of {len(visible.groups)}")
-            snapshot.mesh_of_group.append(self._read_mesh(group, needs, snapshot, bodies[count]))
-        snapshot.groups = visible.groups
-        return snapshot
+    def read_world(self, world: Any) -> World | None:
+        """The light from infinity."""
+        result, problems = world_from_scene(world, self.context)
+        self.context.note(problems)
+        return result
 
     def _body(self, group: Group) -> Body | None:
         """What a group's materials fill, where any of them fills; `None` for surfaces alone."""
@@ -138,19 +162,12 @@ class SceneBuilder:
         if world is None:
             return
         if world.opal.kind != "RAINBOW":
-            add_world_medium(world, self.scene, self._context, self._materials.volumes, self._report)
+            add_world_medium(world, self.scene, self.context, self.materials.volumes, self._report)
             return
         try:
             self.scene.set_world_medium(self.rain.add_world(world))
         except ValueError as error:
             self._report.add(world.name, f"{error} The world is rendered empty.")
-
-    def _lamp_spectrum(self, values: np.ndarray) -> int:
-        """The number of a lamp's spectrum; equal ones have the same, by which the kernels know how many there are."""
-        key = values.tobytes()
-        if key not in self._lamp_spectra:
-            self._lamp_spectra[key] = self.scene.add_spectrum(values)
-        return self._lamp_spectra[key]
 
     def _read_mesh(self, group: Group, needs: MeshNeeds, snapshot: Snapshot, body: Body | None) -> int:
         key = group.mesh.as_pointer()
@@ -193,10 +210,11 @@ class SceneBuilder:
         for group, materials, key in zip(snapshot.groups, snapshot.materials, snapshot.mesh_of_group, strict=True):
             arrays = snapshot.meshes[key]
             if arrays is None:
+                snapshot.first_instances.append(-1)
                 continue
             if key not in numbers:
                 numbers[key] = self._add_mesh(arrays, group.name)
-            self.scene.add_instances(
+            first = self.scene.add_instances(
                 numbers[key],
                 group.transforms,
                 materials,
@@ -206,7 +224,8 @@ class SceneBuilder:
                 holdout=group.holdout,
                 light_group=group.receiver_set,
             )
-        self._add_lights(snapshot.lights)
+            snapshot.first_instances.append(first)
+        self.add_lights(snapshot.lights)
         if camera is not None:
             self.scene.set_camera(camera)
         self.scene.commit()
@@ -230,7 +249,8 @@ class SceneBuilder:
             self._report.add(name, f"{dropped} triangles have corners that are not finite and are left out")
         return number
 
-    def _add_lights(self, lights: Iterable[tuple[Light, str]]) -> None:
+    def add_lights(self, lights: Iterable[tuple[Light, str]]) -> None:
+        """Hands lamps to the kernels."""
         from opal_kernels import binding
 
         for light, name in lights:
@@ -238,6 +258,12 @@ class SceneBuilder:
                 self.scene.add_light(light)
             except binding.OpalError as error:
                 self._report.add(name, f"the lamp is left out: {error}")
+
+
+def world_of(depsgraph: Any) -> Any:
+    """The evaluated world that a view layer shows, or None."""
+    override = getattr(depsgraph.view_layer_eval, "world_override", None)  # since Blender 5
+    return override or depsgraph.scene_eval.world
 
 
 def read_positions(mesh: Any) -> np.ndarray:

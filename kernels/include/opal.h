@@ -81,6 +81,8 @@ OPAL_EXPORT int32_t opal_scene_add_image(opal_scene *scene, const opal_image_des
 
 /* A table over the spectral range (index of refraction, absorption in 1/m, a lamp's relative power...). */
 OPAL_EXPORT int32_t opal_scene_add_spectrum(opal_scene *scene, const float *values);
+/* Replaces a table. Lamps that use it are counted anew by the next opal_scene_commit. */
+OPAL_EXPORT int32_t opal_scene_set_spectrum(opal_scene *scene, int32_t spectrum, const float *values);
 
 /* ---- Media ---- */
 
@@ -342,7 +344,10 @@ OPAL_EXPORT int32_t opal_scene_commit(opal_scene *scene);
 
 typedef struct opal_scene_statistics {
   int64_t triangles, instances, lights, emissive_triangles, memory_bytes;
-  double build_seconds;
+  double build_seconds; /* of the last opal_scene_commit */
+  /* How often opal_scene_commit has built, since the scene was created: the structure of one mesh, the structure over all
+   * instances, and the tables of lights. */
+  int64_t mesh_builds, top_builds, light_builds;
 } opal_scene_statistics;
 OPAL_EXPORT int32_t opal_scene_get_statistics(const opal_scene *scene, opal_scene_statistics *out);
 

@@ -93,6 +93,10 @@ class Scene:
         """Adds 471 values over 360 to 830 nm: an index, an absorption (1/m), a lamp's relative power."""
         return binding.scene_add_spectrum(self.handle, values)
 
+    def set_spectrum(self, spectrum: int, values: Any) -> None:
+        """Replaces a spectrum; `commit` afterwards."""
+        binding.scene_set_spectrum(self.handle, spectrum, values)
+
     def add_material(
         self,
         program: Program | None = None,
@@ -275,7 +279,7 @@ class Scene:
 
     @property
     def statistics(self) -> dict[str, Any]:
-        """Counts, memory (bytes) and build time (s)."""
+        """Counts, memory (bytes), build time (s), and how often meshes, the top level and the tables of lights were built."""
         return binding.scene_get_statistics(self.handle)
 
     def intersect(self, origins: Any, directions: Any) -> dict[str, np.ndarray]:

@@ -39,6 +39,7 @@ from .scene import (
     scene_set_camera,
     scene_set_grid_block,
     scene_set_medium_layer,
+    scene_set_spectrum,
     scene_set_transforms,
     scene_set_world,
     scene_set_world_medium,
@@ -88,6 +89,7 @@ __all__ = [
     "scene_set_world",
     "scene_set_grid_block",
     "scene_set_medium_layer",
+    "scene_set_spectrum",
     "scene_set_world_medium",
     "scene_update_material",
 ]

@@ -36,6 +36,7 @@ SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "opal_scene_destroy": (None, [c_void_p]),
     "opal_scene_add_image": (c_int32, [c_void_p, POINTER(ImageStruct)]),
     "opal_scene_add_spectrum": (c_int32, [c_void_p, FloatPointer]),
+    "opal_scene_set_spectrum": (c_int32, [c_void_p, c_int32, FloatPointer]),
     "opal_scene_add_phase": (c_int32, [c_void_p, POINTER(PhaseStruct)]),
     "opal_scene_add_medium": (c_int32, [c_void_p, POINTER(MediumStruct)]),
     "opal_scene_add_grid": (c_int32, [c_void_p, POINTER(GridStruct)]),

@@ -97,6 +97,12 @@ def scene_add_spectrum(scene: int, values: Any) -> int:
     return checked(library().opal_scene_add_spectrum(scene, pointer(values)))
 
 
+def scene_set_spectrum(scene: int, spectrum: int, values: Any) -> None:
+    """Replaces a table of `scene_add_spectrum`; `scene_commit` afterwards."""
+    values = as_floats("spectrum", values, (SPECTRUM_SIZE,))
+    checked(library().opal_scene_set_spectrum(scene, spectrum, pointer(values)))
+
+
 def scene_add_phase(scene: int, phase: Phase) -> int:
     """Adds a phase function and returns its number.
 
@@ -458,7 +464,7 @@ def scene_commit(scene: int) -> None:
 
 
 def scene_get_statistics(scene: int) -> dict[str, Any]:
-    """Counts, memory (bytes) and build time (s) of a committed scene."""
+    """Counts, memory (bytes), build time (s) and how often what was built, of a committed scene."""
     struct = SceneStatisticsStruct()
     checked(library().opal_scene_get_statistics(scene, byref(struct)))
     return numbers(struct)

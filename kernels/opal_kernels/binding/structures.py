@@ -221,6 +221,9 @@ class SceneStatisticsStruct(ctypes.Structure):
         ("emissive_triangles", c_int64),
         ("memory_bytes", c_int64),
         ("build_seconds", c_double),
+        ("mesh_builds", c_int64),
+        ("top_builds", c_int64),
+        ("light_builds", c_int64),
     ]
 
 

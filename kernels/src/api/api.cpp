@@ -240,6 +240,16 @@ int32_t opal_scene_add_spectrum(opal_scene *scene, const float *values) {
   });
 }
 
+int32_t opal_scene_set_spectrum(opal_scene *scene, int32_t spectrum, const float *values) {
+  return guarded([&] {
+    require(scene && spectrum >= 0 && size_t(spectrum) < scene->spectra.size(), "No such spectrum");
+    require(values && all_finite(values, kTableSize), "A spectrum needs 471 finite values");
+    std::copy(values, values + kTableSize, scene->spectra[size_t(spectrum)].begin());
+    scene->lights_dirty = true;
+    return 0;
+  });
+}
+
 int32_t opal_scene_add_phase(opal_scene *scene, const opal_phase_desc *desc) {
   return guarded([&] {
     require(scene && desc, "No phase function");
@@ -560,7 +570,7 @@ int32_t opal_scene_clear_lights(opal_scene *scene) {
 int32_t opal_scene_set_world(opal_scene *scene, const opal_world_desc *desc) {
   return guarded([&] {
     require(scene, "No scene");
-    scene->lights_dirty = true;
+    scene->lights_dirty = scene->world_dirty = true;
     if (!desc) {
       scene->world = World();
       return 0;
@@ -609,6 +619,9 @@ int32_t opal_scene_get_statistics(const opal_scene *scene, opal_scene_statistics
     out->emissive_triangles = int64_t(scene->emissive.size());
     out->memory_bytes = scene->memory_bytes();
     out->build_seconds = scene->build_seconds;
+    out->mesh_builds = scene->mesh_builds;
+    out->top_builds = scene->top_builds;
+    out->light_builds = scene->light_builds;
     return 0;
   });
 }

@@ -119,7 +119,8 @@ std::shared_ptr<LightTables> build_light_tables(const Scene &scene) {
   }
   for (uint32_t i = 0; i < scene.emissive.size(); ++i)
     t.near_of_triangle[i] = add_near({SourceKind::Triangle, i}, bounds_of(scene.emissive[i]));
-  t.world.build(scene);
+  if (scene.lights && !scene.world_dirty) t.world = scene.lights->world;
+  else t.world.build(scene);
   if (t.world.present() && t.world.brightness() > 0) t.far.push_back({SourceKind::World, 0});
 
   if (t.near.size() > kFewLights) {

@@ -75,55 +75,66 @@ void WorldLight::build(const Scene &scene) {
   brightness_ = float(total / solid);
   seen_ = {}, emitted_ = {};
   if (!map) return;
-  seen_.build(values, width, height, brightness_, kFloor);
-  emitted_.build(values, width, height, 0, kPhotonFloor);
+  const int threads = resolve_threads(scene.threads);
+  seen_.build(values, width, height, brightness_, kFloor, threads);
+  emitted_.build(values, width, height, 0, kPhotonFloor, threads);
 }
 
-void DirectionMap::build(const std::vector<float> &values, int width, int height, float subtract, float floor_share) {
+void DirectionMap::build(const std::vector<float> &values, int width, int height, float subtract, float floor_share,
+                         int threads) {
   width_ = width, height_ = height;
   const auto at = [&](int x, int y) { return values[size_t(y) * size_t(width) + size_t((x + width) % width)]; };
 
   // Interpolation spreads a texel over its neighbours, so the map does as well: half is a mean over 3 x 3 cells.
-  std::vector<double> smooth(values.size());
+  std::vector<double> smooth(values.size()), rows(size_t(height) + 1, 0);
+  const std::atomic<bool> never{false};
+  parallel_for(height, threads, never, [&](int64_t row) {
+    const int y = int(row), first = std::max(0, y - 1), last = std::min(height - 1, y + 1);
+    const double c = std::cos(kPi * ((y + 0.5) / height - 0.5));
+    const auto column = [&](int x) {
+      double sum = 0;
+      for (int j = first; j <= last; ++j) sum += at(x, j);
+      return sum;
+    };
+    double before = column(-1), here = column(0), total = 0;
+    for (int x = 0; x < width; ++x) {
+      const double after = column(x + 1);
+      const double mean = (before + here + after) / (3 * (last - first + 1));
+      const double cell = c * std::max(0.5 * at(x, y) + 0.5 * mean - double(subtract), 0.0);
+      smooth[size_t(y) * size_t(width) + size_t(x)] = cell;
+      total += cell;
+      before = here, here = after;
+    }
+    rows[size_t(y) + 1] = total;
+  });
   double total = 0, solid = 0;
   for (int y = 0; y < height; ++y) {
-    const double c = std::cos(kPi * ((y + 0.5) / height - 0.5));
-    for (int x = 0; x < width; ++x) {
-      double sum = 0;
-      for (int j = std::max(0, y - 1); j <= std::min(height - 1, y + 1); ++j)
-        for (int i = x - 1; i <= x + 1; ++i) sum += at(i, j);
-      const int rows = std::min(height - 1, y + 1) - std::max(0, y - 1) + 1;
-      const double cell = c * std::max(0.5 * at(x, y) + 0.5 * sum / (3 * rows) - double(subtract), 0.0);
-      smooth[size_t(y) * size_t(width) + size_t(x)] = cell;
-      total += cell, solid += c;
-    }
+    total += rows[size_t(y) + 1];
+    solid += width * std::cos(kPi * ((y + 0.5) / height - 0.5));
   }
   const double floor = total > 0 ? floor_share * total / solid : 1.0;
 
   row_cdf_.assign(size_t(height) + 1, 0);
   cell_cdf_.assign(size_t(height) * size_t(width + 1), 0);
   density_.assign(values.size(), 0);
-  std::vector<double> rows(size_t(height) + 1, 0);
-  for (int y = 0; y < height; ++y) {
-    const double c = std::cos(kPi * ((y + 0.5) / height - 0.5));
+  parallel_for(height, threads, never, [&](int64_t y) {
+    const double c = std::cos(kPi * ((double(y) + 0.5) / height - 0.5));
     double sum = 0;
-    std::vector<double> running(size_t(width) + 1, 0);
-    for (int x = 0; x < width; ++x) {
-      double &cell = smooth[size_t(y) * size_t(width) + size_t(x)];
-      cell += floor * c;
-      running[size_t(x) + 1] = sum += cell;
-    }
-    for (int x = 0; x <= width; ++x) cell_cdf_[size_t(y) * size_t(width + 1) + size_t(x)] = float(running[size_t(x)] / sum);
-    rows[size_t(y) + 1] = rows[size_t(y)] + sum;
-  }
+    double *cells = &smooth[size_t(y) * size_t(width)];
+    for (int x = 0; x < width; ++x) cells[x] = sum += cells[x] + floor * c;
+    float *cdf = &cell_cdf_[size_t(y) * size_t(width + 1)];
+    for (int x = 0; x < width; ++x) cdf[x + 1] = float(cells[x] / sum);
+    rows[size_t(y) + 1] = sum;
+  });
+  for (size_t y = 0; y < size_t(height); ++y) rows[y + 1] += rows[y];
   for (int y = 0; y <= height; ++y) row_cdf_[size_t(y)] = float(rows[size_t(y)] / rows[size_t(height)]);
   // The density that sampling the rounded tables really has.
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      const size_t i = size_t(y) * size_t(width + 1) + size_t(x);
-      density_[size_t(y) * size_t(width) + size_t(x)] =
-          (row_cdf_[size_t(y) + 1] - row_cdf_[size_t(y)]) * (cell_cdf_[i + 1] - cell_cdf_[i]) * float(width) * float(height);
-    }
+  parallel_for(height, threads, never, [&](int64_t y) {
+    const float share = (row_cdf_[size_t(y) + 1] - row_cdf_[size_t(y)]) * float(width) * float(height);
+    const float *cdf = &cell_cdf_[size_t(y) * size_t(width + 1)];
+    float *density = &density_[size_t(y) * size_t(width)];
+    for (int x = 0; x < width; ++x) density[x] = share * (cdf[x + 1] - cdf[x]);
+  });
 }
 
 Vec3 DirectionMap::sample(Vec2 u, float &pdf) const {

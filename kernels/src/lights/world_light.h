@@ -18,7 +18,7 @@ namespace opal {
 class DirectionMap {
  public:
   // Density in proportion to the values above `subtract`, rows from the bottom, plus a share `floor` of their mean.
-  void build(const std::vector<float> &values, int width, int height, float subtract, float floor);
+  void build(const std::vector<float> &values, int width, int height, float subtract, float floor, int threads);
   bool empty() const { return row_cdf_.empty(); }
   Vec3 sample(Vec2 u, float &pdf) const;
   float pdf(const Vec3 &direction) const;

@@ -257,9 +257,13 @@ void Scene::commit() {
   if (materials.empty()) materials.emplace_back();
   if (geometry_dirty)
     for (const auto &mesh : meshes)
-      if (mesh->dirty) build_mesh(embree, device, *mesh);
+      if (mesh->dirty) {
+        build_mesh(embree, device, *mesh);
+        ++mesh_builds;
+      }
   if (geometry_dirty || instances_dirty || !top) {
     build_top(*this);
+    ++top_builds;
     bounds = {};
     for (const Instance &instance : instances) bounds.extend(world_bounds(meshes[instance.mesh]->bounds, instance));
   }
@@ -276,9 +280,10 @@ void Scene::commit() {
     find_touching(*this);
     collect_emissive(*this);
     lights = build_light_tables(*this);
+    ++light_builds;
     weigh_wavelengths(*this, colour);
   }
-  geometry_dirty = instances_dirty = lights_dirty = false;
+  geometry_dirty = instances_dirty = lights_dirty = world_dirty = false;
   build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 

@@ -131,11 +131,13 @@ struct Scene {
   std::vector<EmissionTarget> casters;     // spheres round what can make caustics
   std::shared_ptr<LightTables> lights;
   double build_seconds = 0;
-  bool any_transparent_shadow = false;  // a material that shadow rays must look through
-  bool any_touching = false;            // faces of gems may coincide with others
-  bool any_medium = false;              // rays must keep track of what they are in
-  bool any_glowing_medium = false;      // a medium gives off light
+  int64_t mesh_builds = 0, top_builds = 0, light_builds = 0;  // since the scene was created
+  bool any_transparent_shadow = false;                        // a material that shadow rays must look through
+  bool any_touching = false;                                  // faces of gems may coincide with others
+  bool any_medium = false;                                    // rays must keep track of what they are in
+  bool any_glowing_medium = false;                            // a medium gives off light
   bool geometry_dirty = true, instances_dirty = true, lights_dirty = true;
+  bool world_dirty = true;  // its map; part of the lights
 
   Hit intersect(const Ray &ray, uint32_t visibility) const;
   bool occluded(const Ray &ray, uint32_t visibility) const;  // opaque things only matter to the caller
