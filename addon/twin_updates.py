@@ -29,10 +29,23 @@ def attach(group: Any) -> None:
     group.__annotations__ = declarations
 
 
+_running = False
+
+
 def _both(own: Callable[[Any, Any], None] | None) -> Callable[[Any, Any], None]:
     def update(settings: Any, context: Any) -> None:
-        if own is not None:
-            own(settings, context)
+        # A callback that fills in other settings (a species sets a curve of hundreds of points) makes one edit, not hundreds.
+        global _running
+        if _running:
+            if own is not None:
+                own(settings, context)
+            return
+        _running = True
+        try:
+            if own is not None:
+                own(settings, context)
+        finally:
+            _running = False
         from . import twins
 
         twins.follow(settings)

@@ -33,6 +33,8 @@ class Changes:
         Something stands elsewhere, a camera included, so that coordinates in node trees may be others.
     world : bool
         Which world is shown.
+    all_materials : bool
+        Some materials, it is not said which: Blender tells a 3D view of an edited material so.
     materials, worlds, trees : set
         Keys (`identity.key_of`) of materials, worlds and shader node trees.
     """
@@ -41,6 +43,7 @@ class Changes:
     objects: bool = False
     moved: bool = False
     world: bool = False
+    all_materials: bool = False
     materials: set[Any] = field(default_factory=set)
     worlds: set[Any] = field(default_factory=set)
     trees: set[Any] = field(default_factory=set)
@@ -51,7 +54,7 @@ def changes_of(depsgraph: Any) -> Changes:
     found = Changes()
     updates = list(depsgraph.updates)
     if not updates:
-        found.objects = found.world = found.moved = True
+        found.objects = found.world = found.moved = found.all_materials = True
     for update in updates:
         _note(update, update.id, found)
     return found

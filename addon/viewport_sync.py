@@ -168,7 +168,7 @@ class SceneSync:
         if other_frame and builder.context.any_frames:
             raise NeedsRebuild
         needs = builder.context.mesh_needs()
-        changed = self._update_materials(depsgraph, changes, other_frame, before_change)
+        changed = self._update_materials(depsgraph, changes, other_frame or changes.all_materials, before_change)
         if builder.context.mesh_needs() != needs:
             raise NeedsRebuild  # the meshes have to bring more than they did
         if changes.world or changes.worlds or changes.trees or changes.moved or other_frame:
