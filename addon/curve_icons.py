@@ -29,6 +29,16 @@ def icon(chart: Any) -> int:
     return _previews[key].icon_id
 
 
+def draw(layout: Any, chart: Any) -> None:
+    """A small picture of a curve in a panel, and the range that it shows; nothing for None."""
+    if chart is None:
+        return
+    layout.template_icon(icon_value=icon(chart), scale=5.0)
+    row = layout.row()
+    row.alignment = "CENTER"
+    row.label(text=chart.caption)
+
+
 def clear() -> None:
     """Frees every picture."""
     global _previews

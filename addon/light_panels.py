@@ -7,6 +7,7 @@ from typing import Any
 
 import bpy
 
+from . import curve_icons
 from .panels import OpalPanel
 
 
@@ -31,6 +32,15 @@ class OPAL_LIGHT_PT_spectrum(OpalPanel):
             layout.prop(light.opal, "laser_wavelength", text="Wavelength (nm)")
         if light.opal.spectrum != "COLOR" and getattr(light, "use_temperature", False):
             layout.label(text="The spectrum takes the place of the lamp's temperature", icon="INFO")
+        if light.opal.spectrum != "COLOR":
+            self._draw_curve(light)
+
+    def _draw_curve(self, light: Any) -> None:
+        from opal_kernels.charts.wavelength_curve import power_chart
+
+        from .translate.lights import lamp_spectrum
+
+        curve_icons.draw(self.layout, power_chart(lamp_spectrum(light)))
 
 
 def register() -> None:

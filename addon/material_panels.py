@@ -61,7 +61,7 @@ class OPAL_MATERIAL_PT_gem(_MaterialPanel):
         if gem.refusal:
             layout.label(text=gem.refusal, icon="ERROR")
         _draw_read_out(layout, gem)
-        _draw_chart(layout, presets.index_chart(gem))
+        curve_icons.draw(layout, presets.index_chart(gem))
         layout.prop(gem, "roughness")
         layout.prop(gem, "fresnel")
         layout.prop(gem, "priority")
@@ -97,7 +97,7 @@ class OPAL_MATERIAL_PT_gem_absorption(_MaterialPanel):
         if gem.absorption_source == "CURVE":
             row = layout.row()
             row.label(text=f"{len(gem.absorption_curve)} samples")
-            _draw_chart(layout, presets.absorption_chart(gem))
+            curve_icons.draw(layout, presets.absorption_chart(gem))
         else:
             layout.prop(gem, "absorption_color", text="Color")
             layout.prop(gem, "absorption_depth", text="Depth")
@@ -119,16 +119,6 @@ def _draw_read_out(layout: Any, gem: Any) -> None:
         split = box.split(factor=0.6)
         split.label(text=name)
         split.label(text=value)
-
-
-def _draw_chart(layout: Any, chart: Any) -> None:
-    """A small picture of a curve, and the range that it shows."""
-    if chart is None:
-        return
-    layout.template_icon(icon_value=curve_icons.icon(chart), scale=5.0)
-    row = layout.row()
-    row.alignment = "CENTER"
-    row.label(text=chart.caption)
 
 
 CLASSES = (

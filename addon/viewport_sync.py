@@ -29,6 +29,9 @@ from .translate.scene_builder import SceneBuilder, Snapshot, world_of
 from .translate.world import nodes_of
 from .viewport_changes import Changes, changes_of
 
+# Pixels across the world's importance map, at most: a finer one takes longer than it saves in a view.
+_MAP_WIDTH = 512
+
 
 def _nothing() -> None:
     pass
@@ -135,7 +138,7 @@ class SceneSync:
     def _rebuild(self, depsgraph: Any, before_change: Callable[[], None]) -> bool:
         before_change()
         self.close()
-        builder = SceneBuilder(report.start(depsgraph.scene), self._threads)
+        builder = SceneBuilder(report.start(depsgraph.scene), self._threads, map_width=_MAP_WIDTH)
         try:
             snapshot = builder.read(depsgraph)
             kept = _Kept(

@@ -43,11 +43,13 @@ class Pace:
 
 
 def coarse(wanted: RenderSettings, edge: int) -> RenderSettings:
-    """The same view in pixels of another size."""
+    """The same view in pixels of another size, with as many photons fewer as its edges are longer."""
     if edge == 1:
         return wanted
     width, height = max(1, wanted.width // edge), max(1, wanted.height // edge)
-    return replace(wanted, width=width, height=height, region=(0, 0, width, height), passes=())
+    return replace(
+        wanted, width=width, height=height, region=(0, 0, width, height), photons_per_pass=wanted.photons_per_pass // edge, passes=()
+    )
 
 
 class Worker:

@@ -7,7 +7,7 @@
 
 Sub-commands: `cycles` (time to Cycles' error at 64 samples), `caustics` (prism and brilliant, time to relative MSE 0.01), `gems`
 (what dispersion costs, and its chroma), `speed` (rays, photons,
-building), `start` (import, enable), `rainbows` (Lorenz-Mie tables beside miepython and scattnlay). Run it on a machine that does nothing else.
+building), `start` (import, enable), `viewport` (first image, refinements, edits, F12, memory beside Cycles), `rainbows` (Lorenz-Mie tables beside miepython and scattnlay). Run it on a machine that does nothing else.
 """
 
 from __future__ import annotations
@@ -22,17 +22,19 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 
 
-def _inside_blender(options) -> list[dict]:
-    """`cycles` needs the installed extension: this script again, inside `tools/with_extension.py`."""
-    out = ROOT / "build" / "bench-cycles.json"
-    command = [sys.executable, str(ROOT / "tools" / "with_extension.py"), str(HERE / "render.py"), "cycles", "--inside", "--json", str(out)]
+def _inside_blender(what: str, options) -> list[dict]:
+    """What needs the installed extension: this script again, inside `tools/with_extension.py`."""
+    out = ROOT / "build" / f"bench-{what}.json"
+    command = [sys.executable, str(ROOT / "tools" / "with_extension.py"), str(HERE / "render.py"), what, "--inside", "--json", str(out)]
     subprocess.run([*command, "--repeats", str(options.repeats), "--reference-samples", str(options.reference_samples)], check=True)
-    return json.loads(out.read_text())["cycles"]
+    return json.loads(out.read_text())[what]
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", nargs="*", help="cycles, caustics, gems, speed, start, rainbows; cycles, speed and start when left out")
+    parser.add_argument(
+        "what", nargs="*", help="cycles, caustics, gems, speed, start, viewport, rainbows; cycles, speed and start when left out"
+    )
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--seconds", type=float, default=30.0, help="of each run of caustics")
     parser.add_argument("--reference-seconds", type=float, default=300.0, help="of the references of caustics, made once")
@@ -50,7 +52,14 @@ def main() -> None:
                 found[what] = [*against_cycles.measure(options.repeats, options.reference_samples), against_cycles.translation()]
                 against_cycles.report(found[what])
             else:
-                found[what] = _inside_blender(options)
+                found[what] = _inside_blender(what, options)
+        elif what == "viewport":
+            import viewport
+
+            found[what] = viewport.measure(options.repeats) if options.inside else viewport.memory()
+            viewport.report(found[what])
+            if not options.inside:
+                found[what] += _inside_blender(what, options)
         elif what == "caustics":
             import caustics
 
@@ -77,7 +86,7 @@ def main() -> None:
             found[what] = gems.measure(options.scenes, options.seconds, options.repeats, options.reference_seconds)
             gems.report(found[what])
         else:
-            parser.error(f"there is no {what}: cycles, caustics, gems, speed, start or rainbows")
+            parser.error(f"there is no {what}: cycles, caustics, gems, speed, start, viewport or rainbows")
     if options.json:
         options.json.parent.mkdir(parents=True, exist_ok=True)
         options.json.write_text(json.dumps(found, indent=1))

@@ -66,6 +66,8 @@ class SceneBuilder:
         Called with a few words before each step, and with the fraction done in long ones; may raise `Stopped`.
     preview : bool
         Gems absorb as stones of usual size do, not as the boulders that Blender's preview shows.
+    map_width : int, optional
+        Pixels across the world's importance map, at most; it says where samples go, not how bright anything is.
     """
 
     def __init__(
@@ -74,8 +76,10 @@ class SceneBuilder:
         threads: int = 0,
         stage: Callable[..., None] = _ignore_stage,
         preview: bool = False,
+        map_width: int | None = None,
     ) -> None:
         self._report, self._stage = report, stage
+        self._map_width = map_width
         self.scene = Scene(threads=threads)
         self.spectra = Spectra(self.scene)
         self._lamp_spectra: list[int] = []
@@ -146,6 +150,8 @@ class SceneBuilder:
         """The light from infinity."""
         result, problems = world_from_scene(world, self.context)
         self.context.note(problems)
+        if result is not None and self._map_width is not None:
+            result.map_width = min(result.map_width, self._map_width)
         return result
 
     def _body(self, group: Group) -> Body | None:

@@ -74,13 +74,11 @@ def render_and_escape():
     yield from w.until(lambda: any("Pass 2" in text for text in words), 60, "the second pass")
     yield 1.5
     RESULT["while_rendering"] = w.tones(w.screenshot("rendering"), w.box_of(w.area("IMAGE_EDITOR")))
-    waits = []
     w.point_at(w.area("IMAGE_EDITOR"), 0.5, 0.5)
     yield 0.2
-    begun = time.monotonic()
     w.press("Escape")
+    begun = time.monotonic()
     while bpy.app.is_job_running("RENDER") and time.monotonic() < begun + 20:
-        waits.append(time.monotonic() - begun)
         yield 0.01
     RESULT["escape_seconds"] = time.monotonic() - begun
     RESULT["stopped"] = bool(ended) and ended[0] != "complete"
@@ -104,29 +102,21 @@ def look_at_the_rendered_view():
     space.overlay.show_overlays = False
     bpy.context.scene.opal.passes = 1000
     space.shading.type = "RENDERED"
-    yield 1.5
     box = _middle(view)
-    RESULT["view_first"] = w.tones(w.screenshot("view_first"), box)
-    yield 15.0
-    RESULT["view_later"] = w.tones(w.screenshot("view_later"), box)
-    gem = bpy.data.materials[bpy.context.object.active_material.name].opal.gem
-    gem.species = "EMERALD"
-    yield 6.0
-    RESULT["view_edited"] = w.tones(w.screenshot("view_edited"), box)
-    red, green = (w.pixels(w.FOLDER / f"{name}.png", box).mean(axis=(0, 1)).tolist() for name in ("view_later", "view_edited"))
-    RESULT["view_colours"] = {"ruby": red, "emerald": green}
+    yield from w.seen("view_first", box, lambda t: t["grain"] > 0.02 and t["colourful"] > 0.3)
+    first = RESULT["view_first"]
+    yield from w.seen("view_later", box, lambda t: t["spread"] > 0.05 and t["grain"] < 0.7 * first["grain"])
+    ruby = RESULT["view_later"]
+    bpy.context.object.active_material.opal.gem.species = "EMERALD"
+    yield from w.seen("view_edited", box, lambda t: t["green"] - t["red"] > ruby["green"] - ruby["red"] + 0.005)
     # What is rendered goes away, and comes back.
     bpy.ops.ed.undo_push(message="the stone")
     with bpy.context.temp_override(window=w.window(), area=view):
         bpy.ops.object.delete("EXEC_DEFAULT", True)
-    yield 3.0
-    w.screenshot("view_deleted")
+    yield from w.seen("view_deleted", box, lambda t: t["spread"] < 0.5 * ruby["spread"])
     with bpy.context.temp_override(window=w.window()):
         bpy.ops.ed.undo()
-    yield 3.0
-    w.screenshot("view_undone")
-    for name in ("deleted", "undone"):
-        RESULT[f"view_{name}"] = w.pixels(w.FOLDER / f"view_{name}.png", box).mean(axis=(0, 1)).tolist()
+    yield from w.seen("view_undone", box, lambda t: t["spread"] > 0.8 * ruby["spread"])
     w.area("VIEW_3D").spaces.active.shading.type = "SOLID"
     yield 0.5
 
@@ -175,8 +165,8 @@ def stop_the_gem_report():
     w.point_at(view, 0.5, 0.5)
     yield 0.3
     w.screenshot("report")
-    begun = time.monotonic()
     w.press("Escape")
+    begun = time.monotonic()
     while runs() and time.monotonic() < begun + 20:
         yield 0.01
     RESULT["report_escape_seconds"] = time.monotonic() - begun

@@ -19,18 +19,19 @@ BLENDER = ROOT.parent / "shared" / "tools" / "real-blender"
 SCREENSHOTS = ROOT / "build" / "screenshots"
 
 
-def _drive(profile: Path, folder: Path, *arguments: str):
-    """Runs drive.py in the real Blender; (its result, everything it printed)."""
+def drive(profile: Path, folder: Path, *arguments: str, script: str = "drive.py"):
+    """Runs a script of this folder in the real Blender; (its result, everything it printed)."""
     if not BLENDER.exists():
         pytest.skip("no real Blender on this machine: shared/tools/real-blender is absent")
     zips = sorted((ROOT / "dist").glob("opal-*.zip"))
     if not zips:
         pytest.skip("dist/ holds no zip: run `make test`")
+    folder.mkdir(parents=True, exist_ok=True)
     (folder / "result.json").unlink(missing_ok=True)
     environment = os.environ | {"BLENDER_USER_RESOURCES": str(profile)}
     environment.pop("PYTHONPATH", None)
     run = subprocess.run(
-        [str(BLENDER), *arguments, "--python", str(HERE / "drive.py"), "--", str(zips[-1]), str(folder)],
+        [str(BLENDER), *arguments, "--python", str(HERE / script), "--", str(zips[-1]), str(folder)],
         cwd=ROOT,
         env=environment,
         capture_output=True,
@@ -48,12 +49,12 @@ def _drive(profile: Path, folder: Path, *arguments: str):
 
 @pytest.fixture(scope="module")
 def background(tmp_path_factory):
-    return _drive(tmp_path_factory.mktemp("profile"), SCREENSHOTS / "background", "--background")
+    return drive(tmp_path_factory.mktemp("profile"), SCREENSHOTS / "background", "--background")
 
 
 @pytest.fixture(scope="module")
 def windowed(tmp_path_factory):
-    return _drive(tmp_path_factory.mktemp("profile"), SCREENSHOTS / "window")
+    return drive(tmp_path_factory.mktemp("profile"), SCREENSHOTS / "window")
 
 
 def test_the_zip_renders_the_first_scene_without_a_window(background):

@@ -66,6 +66,19 @@ def until(condition: Callable[[], bool], seconds: float, what: str) -> Iterator[
         yield 0.05
 
 
+def seen(name: str, box: tuple, is_there: Callable[[dict], bool], seconds: float = 40.0) -> Iterator[float]:
+    """Takes screenshots until what a part of one shows (`tones`) is as expected; the last one is kept, and in the result.
+
+    A busy machine takes its time; what must be fast is measured apart.
+    """
+    end = time.monotonic() + seconds
+    while True:
+        found = RESULT[name] = tones(screenshot(name), box)
+        if is_there(found) or time.monotonic() > end:
+            return
+        yield 1.0
+
+
 # ---- Where things are ----
 
 
@@ -150,6 +163,8 @@ def tones(path: Path, box: tuple[float, float, float, float] = (0, 0, 1, 1)) -> 
         "height": whole.shape[0],
         "mean": float(part.mean()),
         "spread": float(part.std()),
+        "red": float(part[..., 0].mean()),
+        "green": float(part[..., 1].mean()),
         "grain": float(np.abs(np.diff(part, axis=1)).mean()),
         "colourful": float(np.ptp(part, axis=-1).max()),
     }

@@ -57,6 +57,15 @@ def absorption_chart(per_metre: np.ndarray) -> Chart:
     return Chart(f"0 to {1e-3 * highest:.3g} per mm, {FIRST_NM:.0f} to {LAST_NM:.0f} nm", per_metre, 0.0, 1.1 * highest or 1.0)
 
 
+def power_chart(power: np.ndarray) -> Chart:
+    """Relative spectral power of a lamp, (471,); lines are drawn 5 nm wide, as a picture of so few pixels would miss them."""
+    wide = np.max([np.roll(power, shift) for shift in range(-2, 3)], axis=0)
+    highest = float(_visible(wide).max())
+    nm = wavelengths()
+    peak = float(nm[np.argmax(np.where((nm >= FIRST_NM) & (nm <= LAST_NM), power, -1.0))])
+    return Chart(f"Most at {peak:.0f} nm, {FIRST_NM:.0f} to {LAST_NM:.0f} nm", wide, 0.0, 1.1 * highest or 1.0)
+
+
 def picture(chart: Chart, size: int = 128) -> np.ndarray:
     """The chart as (size, size, 4)."""
     nm = np.linspace(FIRST_NM, LAST_NM, size)

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Opal in a window, by mouse and keys: from the menu's gem to the comparison, as `keys.py` drives it.
+
+Pictures go to build/screenshots/keys, to be looked at. They are compared by their structure alone: what is there, how it is
+coloured, whether its grain falls.
+"""
+
+from __future__ import annotations
+
+import pytest
+from test_real_blender import SCREENSHOTS, drive
+
+# Escape is asked for every 0.03 s and every pass of the tracer ends within 0.1 s of it; Blender's interface looks at its render
+# job every 0.1 s. On an idle machine this comes to 0.2 s; a busy one gets time to draw.
+ESCAPE_SECONDS = 1.0
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    result, printed = drive(tmp_path_factory.mktemp("profile"), SCREENSHOTS / "keys", script="keys.py")
+    assert "Traceback" not in printed, printed[-4000:]
+    return result
+
+
+def test_the_menu_adds_a_gem_with_its_material(found):
+    assert found["gem"]["kind"] == "GEM" and found["gem"]["selected"], found["gem"]
+    assert found["species"] == "RUBY"
+    assert found["species_seconds"] < 0.5, "a species is one edit"
+
+
+def test_f12_shows_progress_and_a_picture_meanwhile(found):
+    assert any("Pass 1 of 10000" in text for text in found["words"]), found["words"]
+    assert found["while_rendering"]["spread"] > 0.02 and found["while_rendering"]["colourful"] > 0.2, found["while_rendering"]
+
+
+def test_escape_stops_the_render_and_keeps_what_there_is(found):
+    assert found["stopped"]
+    assert found["escape_seconds"] < ESCAPE_SECONDS, f"{found['escape_seconds']:.2f} s"
+    assert found["after_escape"]["spread"] == pytest.approx(found["while_rendering"]["spread"], rel=0.2)
+    assert found["after_escape"]["colourful"] > 0.2
+
+
+def test_the_rendered_view_shows_a_picture_that_refines(found):
+    first, later = found["view_first"], found["view_later"]
+    assert first["spread"] > 0.02 and later["colourful"] > 0.2, (first, later)
+    assert later["grain"] < 0.7 * first["grain"], (first["grain"], later["grain"])
+    assert later["mean"] == pytest.approx(first["mean"], abs=0.05)
+
+
+def test_the_rendered_view_follows_a_material_a_deletion_and_an_undo(found):
+    ruby, emerald, deleted, undone = (found[f"view_{name}"] for name in ("later", "edited", "deleted", "undone"))
+    assert emerald["green"] - emerald["red"] > ruby["green"] - ruby["red"] + 0.005, (ruby, emerald)
+    assert deleted["spread"] < 0.5 * ruby["spread"] < undone["spread"], (ruby, deleted, undone)
+
+
+def test_the_comparison_opens_its_picture(found):
+    assert found["compare"] == ["FINISHED"]
+    assert "Opal Side by Side" in found["compare_shown"], found["compare_shown"]
+
+
+def test_escape_stops_the_gem_report(found):
+    assert found["report"] == ["RUNNING_MODAL"] and found["report_runs"]
+    assert found["report_escape_seconds"] < 3.0, "it ends with the band of rows it is at"
+
+
+def test_panels_show_curves_in_the_colours_of_the_spectrum(found):
+    """Nothing else in these panels is as colourful as a spectrum."""
+    assert found["material_panel"]["colourful"] > 0.8 and found["gem_curve"]["colourful"] > 0.8
+    assert found["lamp_F11"]["colourful"] > 0.8 > found["lamp_COLOR"]["colourful"], (found["lamp_F11"], found["lamp_COLOR"])
+
+
+def test_disabling_leaves_nothing(found):
+    assert found["left_behind"] == []
