@@ -8,7 +8,7 @@ coloured, whether its grain falls.
 from __future__ import annotations
 
 import pytest
-from test_real_blender import SCREENSHOTS, drive
+from real_blender import SCREENSHOTS, drive
 
 # Escape is asked for every 0.03 s and every pass of the tracer ends within 0.1 s of it; Blender's interface looks at its render
 # job every 0.1 s. On an idle machine this comes to 0.2 s; a busy one gets time to draw.
