@@ -6,9 +6,11 @@ A pass runs in a thread of its own, because Blender only asks whether to stop on
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 import traceback
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -58,6 +60,11 @@ def render(engine: Any, depsgraph: Any) -> None:
         engine.report({"WARNING"}, summary)
 
 
+# A first pass of more camera paths and photons than this is preceded by a coarse picture of so many pixels and photons.
+_LONG_PASS = 2_000_000
+_LOOK_PIXELS, _LOOK_PHOTONS = 20_000, 4_000
+
+
 class _FinalRender:
     """One view layer's render."""
 
@@ -90,7 +97,7 @@ class _FinalRender:
             result = self.engine.begin_result(0, 0, width, height, layer=self.layer.name)
             cancelled = False
             try:
-                cancelled = not self._run_passes(render, result)
+                cancelled = not (self._look(scene, result) and self._run_passes(render, result))
                 self._write_everything(render, result)
                 if self.capture is not None and render.passes_done:
                     self.capture.take(self.layer.name, render)
@@ -162,6 +169,35 @@ class _FinalRender:
 
     def _camera_matrix(self) -> Any:
         return self._camera().matrix_world.copy()
+
+    def _look(self, scene: Scene, result: Any) -> bool:
+        """A coarse picture to look at while a long first pass runs; it is no part of the render. False if the person stopped it."""
+        wanted, (width, height) = self.settings, self.frame.region_size
+        if self.engine.is_preview or width * height * wanted.samples_per_pass + wanted.photons_per_pass < _LONG_PASS:
+            return True
+        edge = math.ceil(math.sqrt(width * height / _LOOK_PIXELS))
+        x0, y0, x1, y1 = (coordinate // edge for coordinate in self.frame.region)
+        coarse = replace(
+            wanted,
+            width=max(wanted.width // edge, 1),
+            height=max(wanted.height // edge, 1),
+            samples_per_pass=1,
+            photons_per_pass=min(wanted.photons_per_pass, _LOOK_PHOTONS),
+            volume_photons=min(wanted.volume_photons, _LOOK_PHOTONS),
+            region=(x0, y0, x1, y1),
+            passes=(),
+            spectral_bins=0,
+        )
+        if not (x0 < x1 <= coarse.width and y0 < y1 <= coarse.height):
+            return True
+        with Render(scene, coarse) as look:
+            if not self._run_pass(look, 0, 0, self.scene.opal.passes, time.monotonic()):
+                return False
+            picture = look.film(Pass.COMBINED)
+        rows, columns = (np.minimum(np.arange(n) // edge, m - 1) for n, m in zip((height, width), picture.shape, strict=False))
+        _put(result, "Combined", picture[rows[:, None], columns[None, :]])
+        self.engine.update_result(result)
+        return True
 
     def _run_passes(self, render: Render, result: Any) -> bool:
         """Renders until the passes, the time or the noise say enough; False if the person stopped it."""
