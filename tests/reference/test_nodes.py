@@ -391,6 +391,37 @@ for alpha_mode in ("STRAIGHT", "CHANNEL_PACKED", "NONE", "PREMUL")[: 4 if bpy.ap
     case(f"image alpha {alpha_mode}, both", tolerance=2e-2)(both)
 
 
+def tiles(packed):
+    """An image of two tiles on disk, 1001 and 1012, of different sizes."""
+    folder = Path(tempfile.mkdtemp())
+    for number, size in ((1001, (5, 4)), (1012, (8, 8))):
+        tile = bpy.data.images.new("tile", *size)
+        values = np.ones((size[1], size[0], 4), np.float32)
+        values[..., :3] = np.random.default_rng(number).random((size[1], size[0], 3))
+        tile.pixels.foreach_set(values.ravel())
+        tile.filepath_raw, tile.file_format = str(folder / f"tiles.{number}.png"), "PNG"
+        tile.save()
+        bpy.data.images.remove(tile)
+    image = bpy.data.images.load(str(folder / "tiles.1001.png"))
+    image.source = "TILED"
+    image.filepath_raw = str(folder / "tiles.<UDIM>.png")
+    if all(tile.number != 1012 for tile in image.tiles):
+        image.tiles.new(1012)
+    image.reload()
+    if packed:
+        image.pack()
+    return image
+
+
+for packed in (False, True):
+
+    @case(f"image of tiles{', packed' if packed else ''}", edges=True, tolerance=2e-3)
+    def tiled(tree, packed=packed):
+        """The ball spans both tiles and places that no tile covers."""
+        vector = out(node(tree, "Mapping", {"Vector": coordinate(tree), "Location": (1.1, 1.1, 0), "Scale": (0.9, 0.9, 0.9)}))
+        return out(node(tree, "TexImage", {"Vector": vector}, image=tiles(packed), interpolation="Closest"))
+
+
 @case("image by its UV map")
 def _(tree):
     return out(node(tree, "TexImage", image=picture()))
