@@ -5,9 +5,10 @@
     make bench ARGS="caustics"                 beside LuxCore and Mitsuba: pip install -r benchmarks/requirements.txt first
     make bench ARGS="cycles --repeats 5 --json build/bench.json"
 
-Sub-commands: `cycles` (time to Cycles' error at 64 samples), `caustics` (prism and brilliant, time to relative MSE 0.01), `gems`
-(what dispersion costs, and its chroma), `speed` (rays, photons,
-building), `start` (import, enable), `viewport` (first image, refinements, edits, F12, memory beside Cycles), `rainbows` (Lorenz-Mie tables beside miepython and scattnlay). Run it on a machine that does nothing else.
+Sub-commands: `cycles` (time to Cycles' error at 64 samples), `examples` (the examples by `opal.compare_cycles`), `caustics` (prism
+and brilliant, time to relative MSE 0.01), `gems` (what dispersion costs, and its chroma), `speed` (rays, photons, building), `start`
+(import, enable), `viewport` (first image, refinements, edits, F12, memory beside Cycles), `rainbows` (Lorenz-Mie tables beside
+miepython and scattnlay). Run it on a machine that does nothing else.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ def _inside_blender(what: str, options) -> list[dict]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument(
-        "what", nargs="*", help="cycles, caustics, gems, speed, start, viewport, rainbows; cycles, speed and start when left out"
+        "what", nargs="*", help="cycles, examples, caustics, gems, speed, start, viewport, rainbows; cycles, speed and start when left out"
     )
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--seconds", type=float, default=30.0, help="of each run of caustics")
@@ -60,6 +61,14 @@ def main() -> None:
             viewport.report(found[what])
             if not options.inside:
                 found[what] += _inside_blender(what, options)
+        elif what == "examples":
+            if options.inside:
+                import examples_beside_cycles
+
+                found[what] = examples_beside_cycles.measure()
+                examples_beside_cycles.report(found[what])
+            else:
+                found[what] = _inside_blender(what, options)
         elif what == "caustics":
             import caustics
 
@@ -86,7 +95,7 @@ def main() -> None:
             found[what] = gems.measure(options.scenes, options.seconds, options.repeats, options.reference_seconds)
             gems.report(found[what])
         else:
-            parser.error(f"there is no {what}: cycles, caustics, gems, speed, start, viewport or rainbows")
+            parser.error(f"there is no {what}: cycles, examples, caustics, gems, speed, start, viewport or rainbows")
     if options.json:
         options.json.parent.mkdir(parents=True, exist_ok=True)
         options.json.write_text(json.dumps(found, indent=1))
