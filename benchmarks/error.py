@@ -26,13 +26,16 @@ def bright(reference: np.ndarray) -> np.ndarray:
 
 
 def time_to(error: float, seconds: np.ndarray, errors: np.ndarray) -> float:
-    """Seconds at which the error is reached: between two snapshots by a power law, beyond them as an unbiased mean falls, by 1/t."""
+    """Seconds from which on the error is reached: between two snapshots by a power law, beyond them as an unbiased mean falls, by 1/t.
+
+    What counts is the last snapshot above it: a picture that lacks its rare, strong paths looks better before the first of them.
+    """
     t, e = np.asarray(seconds, float), np.asarray(errors, float)
-    below = np.flatnonzero(e <= error)
-    if len(below) == 0:
-        return float(t[-1] * e[-1] / error)
-    i = below[0]
-    if i == 0:
+    above = np.flatnonzero(e > error)
+    if len(above) == 0:
         return float(t[0] * e[0] / error)
-    part = np.log(e[i - 1] / error) / np.log(e[i - 1] / e[i])
-    return float(t[i - 1] * (t[i] / t[i - 1]) ** part)
+    i = above[-1]
+    if i == len(e) - 1:
+        return float(t[-1] * e[-1] / error)
+    part = np.log(e[i] / error) / np.log(e[i] / e[i + 1])
+    return float(t[i] * (t[i + 1] / t[i]) ** part)

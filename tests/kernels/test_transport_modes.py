@@ -64,22 +64,25 @@ def glass_ball_room(scene):
 
 
 def test_what_photons_carry_does_not_change_the_picture():
-    """CAUSTICS, INDIRECT, ALL and NONE beside each other: means within 1 % and patches of the picture within 3 %, noise allowed for."""
+    """CAUSTICS, INDIRECT, ALL and NONE beside each other: means within 1 % and patches of the picture within 3 %, noise allowed for.
+
+    A patch with the ball's caustic is many times as noisy as others where photons are sent everywhere alike: its own noise counts."""
     images = {}
     with Scene(threads=2) as scene:
         glass_ball_room(scene)
         for carry in Carry:
             settings = {"samples_per_pass": 32 if carry == Carry.NONE else 4, "photons_per_pass": 60_000, "radius": 0.02}
-            images[carry] = [picture(scene, 16, size=32, photons_carry=carry, max_depth=64, seed=seed, **settings) for seed in (1, 2)]
-    patches = {c: np.stack(i).reshape(2, 4, 8, 4, 8, 3).mean(axis=(2, 4)) for c, i in images.items()}
+            images[carry] = [picture(scene, 16, size=32, photons_carry=carry, max_depth=64, seed=seed, **settings) for seed in (1, 2, 3)]
+    patches = {c: np.stack(i).reshape(3, 4, 8, 4, 8, 3).mean(axis=(2, 4)) for c, i in images.items()}
     reference = patches[Carry.CAUSTICS].mean(axis=0)
     for carry, found in patches.items():
         ratio = found.mean(axis=(0, 1, 2)) / reference.mean(axis=(0, 1))
-        noise = math.sqrt(sum(0.25 * np.mean((p[0] - p[1]) ** 2) for p in (found, patches[Carry.CAUSTICS])))
-        worst = np.abs(found.mean(axis=0) - reference).max()
-        print(f"{carry.name}: mean ratio {ratio}, worst patch {worst / reference.mean():.4f}, noise {noise / reference.mean():.4f}")
+        squares = sum(found_of.var(axis=0, ddof=1) / len(found_of) for found_of in (found, patches[Carry.CAUSTICS]))
+        noise = np.sqrt(np.maximum(squares, squares.mean()))
+        excess = np.abs(found.mean(axis=0) - reference) - 4 * noise
+        print(f"{carry.name}: mean ratio {ratio}, worst patch beyond its noise {excess.max() / reference.mean():.4f}")
         assert ratio == pytest.approx(1.0, abs=0.01), f"{carry.name} / CAUSTICS = {ratio}"
-        assert worst < 0.03 * reference.mean() + 4 * noise, f"{carry.name}: a patch differs by {worst / reference.mean():.3f} of the mean"
+        assert excess.max() < 0.03 * reference.mean(), f"{carry.name}: a patch differs by {excess.max() / reference.mean():.3f} of the mean"
 
 
 def test_passes_of_light_add_up_to_the_picture():

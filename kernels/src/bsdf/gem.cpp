@@ -87,6 +87,26 @@ bool sample_gem(const ClosureSet &set, const ShadingPoint &sp, Transport transpo
   return out.weight.is_finite();
 }
 
+bool follow_polished(const GemBoundary &gem, int wavelength, const ShadingPoint &sp, bool transmission, Vec3 &wi, float &share,
+                     float &correction) {
+  const Vec3 &n = sp.ns;
+  const float cos_o = dot(n, sp.wo), eta = gem.eta[wavelength];
+  if (!(cos_o > 0)) return false;
+  float cos_t;
+  const float reflected = reflectance(gem, cos_o, eta, cos_t);
+  const Vec3 back = reflect(sp.wo, n);
+  if (!on_side(sp, back, false)) return false;
+  wi = back;
+  if (reflected < 1) {
+    const Vec3 through = normalize(refract(sp.wo, n, eta, cos_t));
+    if (!on_side(sp, through, true)) return false;
+    if (transmission) wi = through;
+  }
+  share = transmission ? 1 - reflected : reflected;
+  correction = flux_correction(n, sp.ng, sp.wo, wi);
+  return share > 0;
+}
+
 Spectrum eval_gem(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, Transport transport, Spectrum &pdf) {
   const GemBoundary &gem = set.gem;
   Spectrum value(0.0f);

@@ -44,17 +44,26 @@ bool Render::wants_photons() const {
 // them.
 bool Render::learn_emission() {
   const auto start = std::chrono::steady_clock::now();
-  const uint32_t n = std::min(kPilotPhotons, uint32_t(settings_.photons_per_pass));
-  const PassContext pass(scene_, settings_, filter_, 0);
+  const uint32_t per_pass = uint32_t(settings_.photons_per_pass);
+  const uint32_t first_round = std::min(kPilotPhotons, per_pass), second_round = std::min(2 * kPilotPhotons, 2 * per_pass);
+  const uint32_t n = first_round + second_round;
+  PassContext pass(scene_, settings_, filter_, 0);
   const PhotonTask task{n, kStreamPilot, true, scene_.any_medium};
-  std::vector<EmissionNumbers> numbers(n);
-  std::vector<float> use(n);
-  const bool complete = parallel_for(int64_t(n + 255) / 256, threads_, cancelled_, [&](int64_t i) {
-    const uint32_t first = uint32_t(i) * 256;
-    try_photons(pass, task, first, std::min(n, first + 256), numbers.data(), use.data());
-  });
-  if (!complete || cancelled_) return false;
-  guide_ = std::make_unique<EmissionGuide>(numbers, use, scene_.lights->to_casters.cdf);
+  std::vector<EmissionTrial> trials;
+  std::unique_ptr<EmissionGuide> guide;
+  for (const uint32_t end : {first_round, n}) {
+    const uint32_t begin = uint32_t(trials.size());
+    if (begin == end) break;
+    trials.resize(end);
+    const bool complete = parallel_for(int64_t(end - begin + 255) / 256, threads_, cancelled_, [&](int64_t i) {
+      const uint32_t first = begin + uint32_t(i) * 256;
+      try_photons(pass, task, first, std::min(end, first + 256), trials.data());
+    });
+    if (!complete || cancelled_) return false;
+    guide = std::make_unique<EmissionGuide>(trials, scene_.lights->to_casters.cdf);
+    pass.guide = guide.get();
+  }
+  guide_ = std::move(guide);
   statistics_.photon_seconds += seconds_since(start);
   return true;
 }

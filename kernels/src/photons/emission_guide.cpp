@@ -69,24 +69,24 @@ size_t EmissionGuide::group_of(float pick) const {
   return groups_[size_t(source)];
 }
 
-EmissionGuide::EmissionGuide(const std::vector<EmissionNumbers> &numbers, const std::vector<float> &use,
-                             const std::vector<float> &sources)
-    : cdf_(sources) {
+EmissionGuide::EmissionGuide(const std::vector<EmissionTrial> &trials, const std::vector<float> &sources) : cdf_(sources) {
   uint32_t n_groups = 1;
   for (size_t i = 0; i + 1 < cdf_.size(); ++i) groups_.push_back(cdf_[i + 1] - cdf_[i] >= kStrong ? n_groups++ : 0);
   sources_.resize(n_groups);
 
-  double all = 0;
-  for (const float u : use) all += u;
-  const double mean = use.empty() ? 1 : std::max(all / double(use.size()), 1e-9);
-
   struct Count {
     explicit Count(int n) : use(size_t(n)), tries(size_t(n)) {}
-    void add(size_t cell, float u) { use[cell] += u, ++tries[cell]; }
+    void add(size_t cell, const EmissionTrial &trial) {
+      use[cell] += double(trial.use) / double(trial.density), tries[cell] += 1 / double(trial.density);
+    }
     std::vector<double> use, tries;
   };
-  Count lights(kLights);
-  for (size_t i = 0; i < numbers.size(); ++i) lights.add(size_t(cell_of(numbers[i].pick.x, kLights)), use[i]);
+  Count all(1), lights(kLights);
+  for (const EmissionTrial &trial : trials) {
+    all.add(0, trial);
+    lights.add(size_t(cell_of(trial.numbers.pick.x, kLights)), trial);
+  }
+  const double mean = trials.empty() ? 1 : std::max(all.use[0] / all.tries[0], 1e-9);
   std::array<double, kLights> weight;
   const std::vector<double> root = roots(lights.use, lights.tries, mean);
   std::copy(root.begin(), root.end(), weight.begin());
@@ -94,15 +94,14 @@ EmissionGuide::EmissionGuide(const std::vector<EmissionNumbers> &numbers, const 
 
   const auto cell = [](Vec2 p) { return size_t(cell_of(p.y, kSide) * kSide + cell_of(p.x, kSide)); };
   for (uint32_t group = 0; group < n_groups; ++group) {
-    Count position(kSide * kSide), direction(kSide * kSide);
-    double used = 0, tried = 0;
-    for (size_t i = 0; i < numbers.size(); ++i) {
-      if (group_of(numbers[i].pick.x) != group) continue;
-      position.add(cell(numbers[i].position), use[i]);
-      direction.add(cell(numbers[i].direction), use[i]);
-      used += use[i], ++tried;
+    Count within(1), position(kSide * kSide), direction(kSide * kSide);
+    for (const EmissionTrial &trial : trials) {
+      if (group_of(trial.numbers.pick.x) != group) continue;
+      within.add(0, trial);
+      position.add(cell(trial.numbers.position), trial);
+      direction.add(cell(trial.numbers.direction), trial);
     }
-    const double rate = tried > 0 ? std::max(used / tried, 1e-3 * mean) : mean;
+    const double rate = within.tries[0] > 0 ? std::max(within.use[0] / within.tries[0], 1e-3 * mean) : mean;
     sources_[group].position.build(roots(position.use, position.tries, rate));
     sources_[group].direction.build(roots(direction.use, direction.tries, rate));
   }

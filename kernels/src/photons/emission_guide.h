@@ -5,8 +5,10 @@
 // which facets throw their light where the camera looks. A pilot of photons finds out: piecewise constant densities over
 // the random numbers that emission uses - which light, where on it, which way - are made proportional to the root of the
 // rate at which photons were of use, which minimises the variance of what they add up to (Jensen 2001's projection maps,
-// learned instead of projected). Each strong source has densities of its own, weak ones share theirs. A quarter of all photons
-// keeps the plain distribution, so that nothing is ever missed and no photon outweighs a plain one by more than four.
+// learned instead of projected). A second round of the pilot, sent where the first was of use, sharpens what it found; its
+// photons count by the inverse of their density, so that rates stay those of plain photons. Each strong source has densities of
+// its own, weak ones share theirs. A seventh of all photons keeps the plain distribution, so that nothing is ever missed and no
+// photon outweighs a plain one by more than seven.
 #pragma once
 
 #include "core/vec.h"
@@ -22,17 +24,23 @@ struct EmissionNumbers {
   Vec2 pick, position, direction;
 };
 
+// A photon of the pilot: of what use its numbers were (>= 0), and by what density they were chosen.
+struct EmissionTrial {
+  EmissionNumbers numbers;
+  float use = 0, density = 1;
+};
+
 class EmissionGuide {
  public:
-  // numbers[i] was worth use[i] >= 0; sources: the cumulative probabilities by which pick.x chooses a source.
-  EmissionGuide(const std::vector<EmissionNumbers> &numbers, const std::vector<float> &use, const std::vector<float> &sources);
+  // sources: the cumulative probabilities by which pick.x chooses a source.
+  EmissionGuide(const std::vector<EmissionTrial> &trials, const std::vector<float> &sources);
   // Numbers that matter, from uniform ones; density is theirs relative to uniform numbers.
   EmissionNumbers warp(EmissionNumbers u, float &density) const;
 
  private:
   static constexpr int kLights = 64, kSide = 32;
   static constexpr float kStrong = 1.0f / 16;  // share of a source that has densities of its own
-  static constexpr float kPlain = 0.25f;
+  static constexpr float kPlain = 0.15f;
 
   // A piecewise constant density over [0,1) and its warp.
   template <int N>

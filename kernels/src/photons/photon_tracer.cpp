@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "photons/photon_tracer.h"
 
+#include "bsdf/gem.h"
 #include "film/spectral_film.h"
 #include "integrator/surface.h"
 #include "scene/contact.h"
+#include "photons/colour_trail.h"
 #include "photons/transmittance_steps.h"
 
 namespace opal {
@@ -11,15 +13,23 @@ namespace {
 
 constexpr int kMaxEvents = 32768;
 constexpr int kRouletteStart = 6;
-constexpr float kUnseenUse = 0.25f;  // of a photon that the camera does not see at first hand: glass and mirrors may show it
+constexpr float kMostSurvive = 0.98f;
+constexpr float kNothing = 0x1p-40f;  // of what a photon set out with: no sum of floats sees it
+constexpr float kUnseenUse = 0.25f;   // of a photon that the camera does not see at first hand: glass and mirrors may show it
 
 EmissionNumbers emission_numbers(const Sampler &sampler) {
   return {sampler.get2d(kDimEmissionLight), sampler.get2d(kDimEmissionPosition), sampler.get2d(kDimEmissionDirection)};
 }
 
+// What is large and serves one photon after the other.
+struct PhotonScratch {
+  ColourTrail trail;
+  Surface surface;  // where a follower leaves its light
+};
+
 class PhotonPath {
  public:
-  PhotonPath(const PassContext &pass, const PhotonTask &task, uint32_t number, PhotonChunk &out)
+  PhotonPath(const PassContext &pass, const PhotonTask &task, uint32_t number, PhotonChunk &out, PhotonScratch &scratch)
       : pass_(pass),
         scene_(pass.scene),
         settings_(pass.settings),
@@ -27,7 +37,11 @@ class PhotonPath {
         sampler_(settings_.seed, task.stream + uint32_t(pass.pass), number),
         index_(PassContext::wavelength_index(sampler_.get1d(kDimWavelength))),
         w_(pass.wavelengths[index_]),
-        out_(out) {}
+        out_(out),
+        scratch_(scratch),
+        trail_(scratch.trail) {
+    trail_.close();
+  }
 
   void trace() {
     if (!emit()) return;
@@ -76,6 +90,7 @@ class PhotonPath {
     const uint32_t kind = sharp_events_ + rough_events_ == 0 ? uint32_t(OPAL_RAY_ALL & ~OPAL_RAY_CAMERA) : ray_kind_;
     const Hit hit = next_hit(scene_, ray_, kind);
     ++out_.rays;
+    if (!media_.empty()) trail_.close();
     if (!media_.empty()) {
       bool alive = true;
       const uint32_t dimension = bounce_dimension(events, 0);
@@ -87,6 +102,7 @@ class PhotonPath {
     absorb(scene_, interior_, hit.t, w_, flux_);
     const Material &material = scene_.material_at(hit);
     if (material.no_surface()) {
+      trail_.close();
       surface_.sp = scene_.shading_point(ray_, hit);
       cross_medium(material, surface_.sp, media_);
       go_on(ray_.direction);
@@ -94,6 +110,7 @@ class PhotonPath {
     }
     make_surface(scene_, ray_, hit, ray_kind_, uint32_t(sharp_events_ + rough_events_), interior_, w_, surface_);
     if (surface_.nothing) {
+      trail_.close();
       cross_boundary(surface_.boundary, interior_);
       go_on(ray_.direction);
       return true;
@@ -101,6 +118,7 @@ class PhotonPath {
     if (sharp_events_ + rough_events_ == 0 && !emission_reaches(emitted_, surface_.sp.p)) return false;
     const bool left = surface_.has_smooth_lobe && photon_is_left(settings_.photons_carry, sharp_events_, rough_events_);
     if (left && task_.on_surfaces) leave();
+    if (!polished_gem()) trail_.close();
     end_ = left ? End::Stored : End::Absorbed;  // if this is where it ends
     if (!surface_.caster && !photon_goes_on(settings_.photons_carry) && !has_transparent_lobe()) return false;
 
@@ -110,6 +128,7 @@ class PhotonPath {
                      sampler_.get2d(dimension + kDimBsdf), sample))
       return false;
     end_ = End::Absorbed;
+    if (polished_gem()) keep_trail(hit, sample);
     flux_ *= sample.weight;
     for (int i = 0; i < kWavelengths; ++i) {
       path_pdf_[i] *= sample.pdf[i] / sample.pdf[0];
@@ -136,11 +155,23 @@ class PhotonPath {
     go_on(sample.wi);
 
     if (sharp_events_ + rough_events_ >= kRouletteStart) {
-      const float survive = std::min(0.98f, flux_.max() / (path_pdf_.average() * start_));
+      const float survive = std::min(kMostSurvive, flux_.max() / (path_pdf_.average() * start_));
       if (!(sampler_.get1d(dimension + kDimRoulette) < survive)) return false;
+      if (trail_.open()) trail_.survived(survive, kMostSurvive, start_ / kWavelengths);
       flux_ *= 1 / survive;
     }
     return true;
+  }
+
+  bool polished_gem() const { return surface_.is_gem && surface_.closures.gem.alpha < kSpecularAlpha; }
+
+  void keep_trail(const Hit &hit, const BsdfSample &sample) {
+    const GemBoundary &gem = surface_.closures.gem;
+    const bool transmission = sample.scattering & kScatterTransmit;
+    if (trail_.open())
+      trail_.add(hit, surface_.material, surface_.sp, gem, transmission, absorption_table(scene_, interior_), ray_kind_);
+    else if ((sample.scattering & kScatterDispersive) && media_.empty() && path_pdf_[kWavelengths - 1] > 0)
+      trail_.start(ray_, surface_.sp, gem, transmission, flux_, path_pdf_);
   }
 
   // Through media up to t_end. True: the way ended before, with a scattering (alive) or an absorption.
@@ -330,7 +361,8 @@ class PhotonPath {
 
   void go_on(const Vec3 &direction) { ray_ = leave_surface(scene_, ray_, surface_.sp, direction); }
 
-  // Leaves the photon: in the map, and on the film where the camera sees this point.
+  // Leaves the photon: in the map, and on the film where the camera sees this point. Wavelengths that follow the hero are for
+  // the film alone.
   void leave() {
     const Spectrum flux = flux_ / path_pdf_.average();
     const ShadingPoint &sp = surface_.sp;
@@ -341,30 +373,55 @@ class PhotonPath {
     photon.set = PassContext::set_of(index_);
     store(flux, photon.flux);
     out_.photons.push_back(photon);
-    splat(flux);
+    if (trail_.open()) splat_with_followers();
+    else splat(surface_, flux, path_pdf_);
   }
 
-  void splat(const Spectrum &flux) {
+  void splat_with_followers() {
+    const auto only = [](int k, float value) {
+      Spectrum s(0.0f);
+      s[k] = value;
+      return s;
+    };
+    const size_t first = out_.splats.size(), first_spectral = out_.spectral.size();
+    splat(surface_, only(0, flux_[0] * kWavelengths), only(0, 1));
+    float together = path_pdf_[0];
+    const int32_t absorption = absorption_table(scene_, interior_);
+    ColourTrail::End end;
+    for (int k = 1; k < kWavelengths; ++k) {
+      if (!trail_.follow(scene_, w_, absorption, ray_kind_, k, end, out_.rays)) continue;
+      Surface &there = scratch_.surface;
+      make_surface(scene_, end.ray, end.hit, ray_kind_, uint32_t(sharp_events_ + rough_events_), interior_, w_, there);
+      if (!there.has_smooth_lobe) continue;
+      together += end.path_pdf;
+      splat(there, only(k, end.flux * kWavelengths), only(k, 1));
+    }
+    for (size_t i = first; i < out_.splats.size(); ++i) out_.splats[i].rgb *= 1 / together;
+    for (size_t i = first_spectral; i < out_.spectral.size(); ++i) out_.spectral[i].second *= 1 / together;
+  }
+
+  void splat(const Surface &surface, const Spectrum &flux, const Spectrum &path_pdf) {
+    if (!(flux.max() > kNothing * start_)) return;
     const Vec2 offset = pass_.filter.sample(sampler_.get2d(kDimFilter));
     CameraConnection seen;
-    if (!connect(scene_.camera, surface_.sp.p, sampler_.get2d(kDimLens), ray_.time, seen,
+    if (!connect(scene_.camera, surface.sp.p, sampler_.get2d(kDimLens), ray_.time, seen,
                  pass_.filter.width() / float(settings_.width), pass_.filter.width() / float(settings_.height)))
       return;
     const float x = seen.film_x * float(settings_.width) + offset.x, y = seen.film_y * float(settings_.height) + offset.y;
     const int *region = settings_.region;
     if (!(x >= float(region[0]) && x < float(region[2]) && y >= float(region[1]) && y < float(region[3]))) return;
-    if (!(scene_.groups[surface_.sp.instance->group].visibility & OPAL_RAY_CAMERA)) return;
-    const Spectrum f = rough_towards_camera(scene_, surface_, seen.to_camera, seen.distance, w_);
+    if (!(scene_.groups[surface.sp.instance->group].visibility & OPAL_RAY_CAMERA)) return;
+    const Spectrum f = rough_towards_camera(scene_, surface, seen.to_camera, seen.distance, w_);
     Spectrum radiance = flux * f * (seen.importance * float(settings_.width) * float(settings_.height));
     if (radiance.is_zero() || !radiance.is_finite()) return;
-    const Ray shadow{offset_origin(surface_.sp, seen.to_camera), seen.to_camera, 0, seen.distance, ray_.time};
+    const Ray shadow{offset_origin(surface.sp, seen.to_camera), seen.to_camera, 0, seen.distance, ray_.time};
     const Passage through =
         passage(scene_, shadow, media_, settings_.transparent_depth, w_,
                 RandomStream(sampler_, bounce_dimension(uint32_t(sharp_events_ + rough_events_), kDimSpare)));
     ++out_.rays;
     if (through.blocked()) return;
     radiance *= uplift(through.surfaces, w_) * through.medium;
-    radiance *= path_pdf_.average() / (path_pdf_ * through.light_pdf).average();
+    radiance *= path_pdf.average() / (path_pdf * through.light_pdf).average();
     const uint32_t pixel =
         (uint32_t(y) - uint32_t(region[1])) * uint32_t(region[2] - region[0]) + (uint32_t(x) - uint32_t(region[0]));
     out_.splats.push_back({pixel, photon_pass(sharp_events_, rough_events_), to_rgb(radiance, w_)});
@@ -384,6 +441,8 @@ class PhotonPath {
   const uint32_t index_;
   const Wavelengths &w_;
   PhotonChunk &out_;
+  PhotonScratch &scratch_;
+  ColourTrail &trail_;
 
   EmissionSample emitted_;
   Ray ray_;
@@ -400,18 +459,21 @@ class PhotonPath {
 }  // namespace
 
 void trace_photons(const PassContext &pass, const PhotonTask &task, uint32_t first, uint32_t last, PhotonChunk &out) {
-  for (uint32_t i = first; i < last; ++i) PhotonPath(pass, task, i, out).trace();
+  PhotonScratch scratch;
+  for (uint32_t i = first; i < last; ++i) PhotonPath(pass, task, i, out, scratch).trace();
 }
 
-void try_photons(const PassContext &pass, const PhotonTask &task, uint32_t first, uint32_t last, EmissionNumbers *numbers,
-                 float *use) {
+void try_photons(const PassContext &pass, const PhotonTask &task, uint32_t first, uint32_t last, EmissionTrial *trials) {
   PhotonChunk left;
+  PhotonScratch scratch;
   for (uint32_t i = first; i < last; ++i) {
     left.photons.clear(), left.volume.clear(), left.beams.clear(), left.splats.clear(), left.spectral.clear();
-    PhotonPath(pass, task, i, left).trace();
-    numbers[i] = emission_numbers(Sampler(pass.settings.seed, task.stream + uint32_t(pass.pass), i));
+    PhotonPath(pass, task, i, left, scratch).trace();
+    EmissionTrial &trial = trials[i];
+    trial.numbers = emission_numbers(Sampler(pass.settings.seed, task.stream + uint32_t(pass.pass), i));
+    if (pass.guide) trial.numbers = pass.guide->warp(trial.numbers, trial.density);
     const bool in_media = !left.volume.empty() || !left.beams.empty();
-    use[i] = float(left.splats.size()) + (in_media ? 1.0f : 0.0f) + kUnseenUse * float(left.photons.size());
+    trial.use = (left.splats.empty() ? 0.0f : 1.0f) + (in_media ? 1.0f : 0.0f) + kUnseenUse * float(left.photons.size());
   }
 }
 

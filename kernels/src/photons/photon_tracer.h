@@ -44,8 +44,7 @@ struct PhotonTask {
 
 // Traces photons first .. last-1 of a task.
 void trace_photons(const PassContext &pass, const PhotonTask &task, uint32_t first, uint32_t last, PhotonChunk &out);
-// Traces them to see what they were of use for, and leaves nothing: numbers[i] and use[i] of each photon i.
-void try_photons(const PassContext &pass, const PhotonTask &task, uint32_t first, uint32_t last, EmissionNumbers *numbers,
-                 float *use);
+// Traces them to see of what use they are, and leaves nothing: trials[i] of each photon i.
+void try_photons(const PassContext &pass, const PhotonTask &task, uint32_t first, uint32_t last, EmissionTrial *trials);
 
 }  // namespace opal

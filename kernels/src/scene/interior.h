@@ -74,11 +74,13 @@ inline Spectrum index_of_refraction(const Scene &scene, const InteriorStack::Ent
 }
 
 // Beer-Lambert over `distance` metres of the interior that counts.
+inline int32_t absorption_table(const Scene &scene, const InteriorStack &interior) {  // -1: none
+  const InteriorStack::Entry *entry = interior.current();
+  return entry ? scene.materials[entry->material].gem.absorption_spectrum : -1;
+}
 inline void absorb(const Scene &scene, const InteriorStack &interior, float distance, const Wavelengths &w,
                    Spectrum &throughput) {
-  const InteriorStack::Entry *entry = interior.current();
-  if (!entry) return;
-  const int32_t table = scene.materials[entry->material].gem.absorption_spectrum;
+  const int32_t table = absorption_table(scene, interior);
   if (table < 0) return;
   const Spectrum sigma = lookup(scene.spectra[size_t(table)], w);
   for (int i = 0; i < kWavelengths; ++i) throughput[i] *= std::exp(-sigma[i] * distance);

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "photons/colour_trail.h"
+
+#include "bsdf/gem.h"
+#include "scene/contact.h"
+
+namespace opal {
+namespace {
+
+float hero_share(const GemBoundary &gem, const ShadingPoint &sp, bool transmission) {
+  Vec3 wi;
+  float share = 0, correction;
+  return follow_polished(gem, 0, sp, transmission, wi, share, correction) ? share : 0;
+}
+
+}  // namespace
+
+void ColourTrail::start(const Ray &arrived, const ShadingPoint &sp, const GemBoundary &gem, bool transmission,
+                        const Spectrum &flux, const Spectrum &path_pdf) {
+  arrived_ = arrived, first_ = sp, flux_ = flux, path_pdf_ = path_pdf;
+  const float share = hero_share(gem, sp, transmission);
+  open_ = share > 0;
+  steps_.clear();
+  steps_.push_back({0, 0, 0, false, transmission, -1, share, 0, 0, 0, gem});
+}
+
+void ColourTrail::add(const Hit &hit, uint32_t material, const ShadingPoint &sp, const GemBoundary &gem, bool transmission,
+                      int32_t absorption, uint32_t ray_kind) {
+  const float share = hero_share(gem, sp, transmission);
+  open_ = share > 0;
+  steps_.push_back({hit.instance, material, ray_kind, sp.backfacing, transmission, absorption, share, 0, 0, 0, gem});
+}
+
+void ColourTrail::survived(float probability, float most, float whole) {
+  Step &step = steps_.back();
+  step.survived = probability, step.most = most, step.whole = whole;
+}
+
+bool ColourTrail::follow(const Scene &scene, const Wavelengths &w, int32_t absorption, uint32_t ray_kind, int k, End &end,
+                         int64_t &rays) const {
+  end.flux = flux_[k], end.path_pdf = path_pdf_[k];
+  float as_hero = flux_[k] / path_pdf_[k];  // what it would carry if it led: the choices' probabilities cancel
+  const auto absorb = [&](int32_t table, float distance) {
+    if (table < 0) return;
+    const float left = std::exp(-lookup(scene.spectra[size_t(table)], w.nm[k]) * distance);
+    end.flux *= left, as_hero *= left;
+  };
+  end.ray = arrived_;
+  ShadingPoint sp = first_;
+  for (size_t i = 0; i < steps_.size(); ++i) {
+    const Step &step = steps_[i];
+    if (i > 0) {
+      end.hit = next_hit(scene, end.ray, step.ray_kind);
+      ++rays;
+      if (!end.hit.valid() || end.hit.instance != step.instance) return false;
+      if (scene.material_index(end.hit.instance, end.hit.triangle) != step.material) return false;
+      sp = scene.shading_point(end.ray, end.hit);
+      if (sp.backfacing != step.backfacing) return false;
+      absorb(step.absorption, end.hit.t);
+    }
+    Vec3 wi;
+    float share, correction;
+    if (!follow_polished(step.gem, k, sp, step.transmission, wi, share, correction)) return false;
+    end.flux *= share / step.hero_share * correction;
+    end.path_pdf *= share / step.hero_share;
+    as_hero *= correction;
+    end.ray = leave_surface(scene, end.ray, sp, wi);
+    if (step.survived > 0) {
+      const float survives = std::min(step.most, as_hero / step.whole);
+      end.flux /= step.survived;
+      end.path_pdf *= survives / step.survived;
+      as_hero /= survives;
+    }
+  }
+  end.hit = next_hit(scene, end.ray, ray_kind);
+  ++rays;
+  if (!end.hit.valid()) return false;
+  const Material &met = scene.material_at(end.hit);
+  if (met.is_gem || met.no_surface()) return false;
+  absorb(absorption, end.hit.t);
+  return end.path_pdf > 0 && std::isfinite(end.flux);
+}
+
+}  // namespace opal
