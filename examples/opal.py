@@ -24,29 +24,39 @@ LEDGE = 0.30
 """Depth of the parapet, m."""
 # Species, cut, the facet it lies on, width (m), place (m), and the azimuth (degrees) towards which its table leans.
 STONES = (
-    ("RUBY", "OVAL", "main", 0.0070, (0.0225, 0.0060), -125),
-    ("EMERALD", "EMERALD", "pavilion 2", 0.0062, (0.0125, -0.0055), -70),
-    ("SAPPHIRE_BLUE", "CUSHION", "main", 0.0068, (-0.0240, 0.0080), -60),
-    ("AMETHYST", "PEAR", "main", 0.0072, (-0.0165, -0.0050), -95),
-    ("CITRINE", "TRILLION", "main", 0.0056, (0.0010, -0.0090), -110),
+    ("RUBY", "OVAL", "main", 0.0086, (0.0225, 0.0060), -125),
+    ("EMERALD", "EMERALD", "pavilion 2", 0.0074, (0.0125, -0.0055), -70),
+    ("SAPPHIRE_BLUE", "CUSHION", "main", 0.0082, (-0.0240, 0.0080), -60),
+    ("AMETHYST", "PEAR", "main", 0.0084, (-0.0165, -0.0050), -95),
+    ("CITRINE", "TRILLION", "main", 0.0070, (0.0010, -0.0090), -110),
 )
 TIME_LIMIT = 130.0
 """Of the render, s."""
 
 
 def marble() -> bpy.types.Material:
-    """Pale stone with soft grey veins."""
-    material = _scene.surface("Marble", (0.3, 0.29, 0.27), roughness=0.7, specular=0.15)
+    """Honed warm stone: a fine cloudy ground and thin dark veins where a folded noise passes its middle."""
+    material = _scene.surface("Marble", (0.3, 0.29, 0.27), roughness=0.35, specular=0.3)
     nodes, links = material.node_tree.nodes, material.node_tree.links
     shader = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
-    coordinates, noise, ramp = nodes.new("ShaderNodeTexCoord"), nodes.new("ShaderNodeTexNoise"), nodes.new("ShaderNodeValToRGB")
-    noise.inputs["Scale"].default_value, noise.inputs["Detail"].default_value = 45.0, 8.0
-    noise.inputs["Distortion"].default_value = 1.6
-    for stop, place, colour in zip(ramp.color_ramp.elements, (0.44, 0.56), ((0.16, 0.155, 0.15, 1), (0.33, 0.32, 0.30, 1)), strict=True):
-        stop.position, stop.color = place, colour
-    links.new(coordinates.outputs["Object"], noise.inputs["Vector"])
-    links.new(noise.outputs[0], ramp.inputs["Fac"])
-    links.new(ramp.outputs["Color"], shader.inputs["Base Color"])
+    coordinates, mix = nodes.new("ShaderNodeTexCoord"), nodes.new("ShaderNodeMix")
+    mix.data_type, mix.blend_type = "RGBA", "MULTIPLY"
+    mix.inputs["Factor"].default_value = 1.0
+    colours = [socket for socket in mix.inputs if socket.type == "RGBA"]
+    ground = ((0.40, (0.235, 0.22, 0.20, 1)), (0.62, (0.31, 0.295, 0.27, 1)))
+    veins = ((0.470, (1, 1, 1, 1)), (0.497, (0.42, 0.40, 0.38, 1)), (0.512, (1, 1, 1, 1)))
+    for socket, scale, distortion, stops in ((colours[0], 260.0, 0.4, ground), (colours[1], 32.0, 1.1, veins)):
+        noise, ramp = nodes.new("ShaderNodeTexNoise"), nodes.new("ShaderNodeValToRGB")
+        noise.inputs["Scale"].default_value, noise.inputs["Detail"].default_value = scale, 9.0
+        noise.inputs["Distortion"].default_value = distortion
+        while len(ramp.color_ramp.elements) < len(stops):
+            ramp.color_ramp.elements.new(0.5)
+        for stop, (place, colour) in zip(ramp.color_ramp.elements, stops, strict=True):
+            stop.position, stop.color = place, colour
+        links.new(coordinates.outputs["Object"], noise.inputs["Vector"])
+        links.new(noise.outputs[0], ramp.inputs["Fac"])
+        links.new(ramp.outputs["Color"], socket)
+    links.new(next(socket for socket in mix.outputs if socket.type == "RGBA"), shader.inputs["Base Color"])
     return material
 
 
@@ -73,7 +83,7 @@ def land() -> None:
     z = far * (ridges + 95.0) - 12.0 + 0.6 * np.sin(x / 19.0) * np.sin(y / 23.0)
     vertices = np.stack([x, y, z], axis=-1).reshape(-1, 3).tolist()
     faces = [(i, i + 1, i + n + 1, i + n) for r in range(n - 1) for i in range(r * n, r * n + n - 1)]
-    _scene.mesh("Land", vertices, faces, meadow("Woods", 0.035, (0.012, 0.024, 0.010), (0.075, 0.095, 0.028)), smooth=True)
+    _scene.mesh("Land", vertices, faces, meadow("Woods", 0.035, (0.022, 0.042, 0.016), (0.14, 0.16, 0.045)), smooth=True)
 
 
 def turned(name: str, profile: list, material: bpy.types.Material, place: tuple, around: int = 96) -> bpy.types.Object:
@@ -99,14 +109,17 @@ def fountain(place: tuple) -> None:
     stone = _scene.matte("Sandstone", (0.34, 0.30, 0.25))
     turned("Basin", [(0, 0), (3.0, 0), (3.3, 0.9), (2.95, 0.9), (2.8, 0.55), (0, 0.55)], stone, place)
     turned("Stem", [(0, 0.5), (0.35, 0.5), (0.22, 1.6), (1.1, 2.1), (1.0, 2.15), (0, 2.0)], stone, place)
-    spray = bpy.data.materials.new("Spray")
-    spray.opal.kind = "MEDIUM"
-    medium = spray.opal.medium
-    medium.extinction, medium.albedo = 0.7, (0.98, 0.98, 0.98)
-    medium.density, medium.noise_scale, medium.noise_detail, medium.noise_contrast = "NOISE", 3.0, 4.0, 8.0
-    medium.phase, medium.anisotropy = "HENYEY_GREENSTEIN", 0.3
-    rise = [(0, 16.6), (0.55, 16.2), (1.0, 15.0), (1.6, 12.0), (2.4, 8.6), (3.4, 5.0), (4.4, 1.4), (0, 1.0)]
-    turned("Spray", list(reversed(rise)), spray, place)
+    # A dense jet that falls back about itself, in a veil of finer spray; where two media overlap their densities add.
+    jet = [(0, 13.8), (0.14, 13.5), (0.32, 12.4), (0.5, 10.5), (0.68, 7.5), (0.85, 4.5), (1.0, 1.8), (0.9, 0.8), (0, 0.6)]
+    veil = [(0, 14.4), (0.3, 14.0), (0.9, 12.4), (1.5, 9.8), (2.0, 6.5), (2.4, 3.5), (2.6, 1.2), (2.4, 0.7), (0, 0.6)]
+    for name, extinction, lumps, contrast, profile in (("Jet", 1.1, 1.1, 4.0, jet), ("Veil", 0.16, 1.6, 4.0, veil)):
+        water = bpy.data.materials.new(name)
+        water.opal.kind = "MEDIUM"
+        medium = water.opal.medium
+        medium.extinction, medium.albedo = extinction, (0.99, 0.99, 0.99)
+        medium.density, medium.noise_scale, medium.noise_detail, medium.noise_contrast = "NOISE", lumps, 4.0, contrast
+        medium.phase, medium.anisotropy = "HENYEY_GREENSTEIN", 0.3
+        turned(name, list(reversed(profile)), water, place)
 
 
 def rain() -> None:
@@ -144,6 +157,12 @@ def clouds() -> None:
     links.new(height.outputs["Color"], colours[0])
     links.new(shade.outputs["Color"], colours[1])
     links.new(next(socket for socket in mix.outputs if socket.type == "RGBA"), background.inputs["Color"])
+    # The sun's side is clear: what the stones' facets show of it is what makes them bright.
+    clearing = nodes.new("ShaderNodeMapRange")
+    clearing.inputs["From Min"].default_value, clearing.inputs["From Max"].default_value = 0.1, -0.9
+    clearing.inputs["To Min"].default_value, clearing.inputs["To Max"].default_value = 0.42, 1.6
+    links.new(split.outputs["Y"], clearing.inputs["Value"])
+    links.new(clearing.outputs["Result"], background.inputs["Strength"])
 
 
 def ring_with_diamond() -> None:
