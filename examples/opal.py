@@ -3,7 +3,7 @@
 
 The sun stands 24° high behind the camera's left shoulder. It throws the stones' caustics along the marble, lights the spray, and makes a
 double rainbow round the point opposite to it, 24° under the horizon: the first bow's top is 42° − 24° = 18° high. Everything has its real
-size, from a stone of 6 mm to hills at 2 km, and one render draws it all.
+size, from stones of 8 mm to hills at 2 km, and one render draws it all.
 """
 
 import math
