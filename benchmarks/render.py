@@ -46,14 +46,18 @@ def main() -> None:
     options = parser.parse_args()
     found = {}
     for what in options.what or ["cycles", "speed", "start"]:
-        if what == "cycles":
-            if options.inside:
-                import against_cycles
+        if what in {"cycles", "examples"} and not options.inside:
+            found[what] = _inside_blender(what, options)
+        elif what == "cycles":
+            import against_cycles
 
-                found[what] = [*against_cycles.measure(options.repeats, options.reference_samples), against_cycles.translation()]
-                against_cycles.report(found[what])
-            else:
-                found[what] = _inside_blender(what, options)
+            found[what] = [*against_cycles.measure(options.repeats, options.reference_samples), against_cycles.translation()]
+            against_cycles.report(found[what])
+        elif what == "examples":
+            import examples_beside_cycles
+
+            found[what] = examples_beside_cycles.measure()
+            examples_beside_cycles.report(found[what])
         elif what == "viewport":
             import viewport
 
@@ -61,14 +65,6 @@ def main() -> None:
             viewport.report(found[what])
             if not options.inside:
                 found[what] += _inside_blender(what, options)
-        elif what == "examples":
-            if options.inside:
-                import examples_beside_cycles
-
-                found[what] = examples_beside_cycles.measure()
-                examples_beside_cycles.report(found[what])
-            else:
-                found[what] = _inside_blender(what, options)
         elif what == "caustics":
             import caustics
 

@@ -31,7 +31,6 @@ def groups() -> list[tuple[str, str, Any]]:
         ("World", "world.opal", bpy.types.World),
         ("Light", "light.opal", bpy.types.Light),
         ("Camera", "camera.opal", bpy.types.Camera),
-        ("Object", "object.opal", bpy.types.Object),
     )
     found: list[tuple[str, str, Any]] = []
 
@@ -98,8 +97,7 @@ def operators() -> list[str]:
     lines = ["| operator | name | what it does |", "|---|---|---|"]
     for name in sorted(dir(bpy.ops.opal)):
         rna = getattr(bpy.ops.opal, name).get_rna_type()
-        if "INTERNAL" not in getattr(rna, "bl_options", ()):
-            lines.append(f"| `opal.{name}` | {rna.name} | {rna.description} |")
+        lines.append(f"| `opal.{name}` | {rna.name} | {rna.description} |")
     return lines
 
 

@@ -114,7 +114,7 @@ class Materials:
         for old in [known for key, known in self._known.items() if key[0] == mine]:
             if not old.in_place or fills(material) or material.opal.kind != old.kind:
                 raise NeedsRebuild
-            if old.kind == "GEM" and _gem_content(material.opal.gem, self._absorption_scale) == old.content:
+            if old.kind == "GEM" and _gem_content(material.opal.gem, _gem_tables(material.opal.gem, self._absorption_scale)) == old.content:
                 continue
             self._report.forget(material.name)
             new = _Known(old.number, old.kind)
@@ -186,9 +186,9 @@ class Materials:
         gem = settings.gem
         for sentence in _gem_refusals(gem):
             self._report.add(name, sentence)
-        index, absorption = _gem_tables(gem, self._absorption_scale)
+        index, absorption = tables = _gem_tables(gem, self._absorption_scale)
         known.spectra = [self._spectra.take(table) for table in (index, absorption) if table is not None]
-        known.content = _gem_content(gem, self._absorption_scale)
+        known.content = _gem_content(gem, tables)
         description = Gem(
             index_spectrum=known.spectra[0],
             absorption_spectrum=-1 if absorption is None else known.spectra[1],
@@ -226,11 +226,10 @@ def _gem_tables(gem: Any, absorption_scale: float) -> tuple[Any, Any]:
     return index, None if absorption is None else absorption * absorption_scale
 
 
-def _gem_content(gem: Any, absorption_scale: float) -> tuple:
-    """What makes two gems the same."""
-    index, absorption = _gem_tables(gem, absorption_scale)
-    tables = index.tobytes(), None if absorption is None else absorption.tobytes()
-    return (*tables, gem.roughness, gem.fresnel, gem.priority)
+def _gem_content(gem: Any, tables: tuple[Any, Any]) -> tuple:
+    """What makes two gems the same; `tables` are `_gem_tables`."""
+    content = (None if table is None else table.tobytes() for table in tables)
+    return (*content, gem.roughness, gem.fresnel, gem.priority)
 
 
 def fills(material: Any) -> bool:

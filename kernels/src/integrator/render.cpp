@@ -44,16 +44,13 @@ bool Render::wants_photons() const {
 // them.
 bool Render::learn_emission() {
   const auto start = std::chrono::steady_clock::now();
-  const uint32_t per_pass = uint32_t(settings_.photons_per_pass);
-  const uint32_t first_round = std::min(kPilotPhotons, per_pass), second_round = std::min(2 * kPilotPhotons, 2 * per_pass);
-  const uint32_t n = first_round + second_round;
+  const uint32_t first_round = std::min(kPilotPhotons, uint32_t(settings_.photons_per_pass)), n = 3 * first_round;
   PassContext pass(scene_, settings_, filter_, 0);
   const PhotonTask task{n, kStreamPilot, true, scene_.any_medium};
   std::vector<EmissionTrial> trials;
   std::unique_ptr<EmissionGuide> guide;
   for (const uint32_t end : {first_round, n}) {
     const uint32_t begin = uint32_t(trials.size());
-    if (begin == end) break;
     trials.resize(end);
     const bool complete = parallel_for(int64_t(end - begin + 255) / 256, threads_, cancelled_, [&](int64_t i) {
       const uint32_t first = begin + uint32_t(i) * 256;

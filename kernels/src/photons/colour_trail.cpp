@@ -7,33 +7,27 @@
 namespace opal {
 namespace {
 
-float hero_share(const GemBoundary &gem, const ShadingPoint &sp, bool transmission) {
+// Whether the hero chose as its followers do. A flat face always serves; an interpolated normal that does not serve for one of
+// the choices gives way to the face's own, where followers do not go.
+bool chose_alike(const GemBoundary &gem, const ShadingPoint &sp, bool transmission) {
   Vec3 wi;
-  float share = 0, correction;
-  return follow_polished(gem, 0, sp, transmission, wi, share, correction) ? share : 0;
+  float share, correction;
+  return !sp.smooth || follow_polished(gem, 0, sp, transmission, wi, share, correction);
 }
 
 }  // namespace
 
-void ColourTrail::start(const Ray &arrived, const ShadingPoint &sp, const GemBoundary &gem, bool transmission,
-                        const Spectrum &flux, const Spectrum &path_pdf) {
-  arrived_ = arrived, first_ = sp, flux_ = flux, path_pdf_ = path_pdf;
-  const float share = hero_share(gem, sp, transmission);
-  open_ = share > 0;
+void ColourTrail::start(const Ray &arrived, const ShadingPoint &sp, const GemBoundary &gem, bool transmission, float share,
+                        const Spectrum &flux, const Spectrum &path_pdf, float set_out) {
+  arrived_ = arrived, first_ = sp, flux_ = flux, path_pdf_ = path_pdf, whole_ = set_out / kWavelengths;
   steps_.clear();
-  steps_.push_back({0, 0, 0, false, transmission, -1, share, 0, 0, 0, gem});
+  add({}, 0, sp, gem, transmission, share, -1, 0);
 }
 
 void ColourTrail::add(const Hit &hit, uint32_t material, const ShadingPoint &sp, const GemBoundary &gem, bool transmission,
-                      int32_t absorption, uint32_t ray_kind) {
-  const float share = hero_share(gem, sp, transmission);
-  open_ = share > 0;
-  steps_.push_back({hit.instance, material, ray_kind, sp.backfacing, transmission, absorption, share, 0, 0, 0, gem});
-}
-
-void ColourTrail::survived(float probability, float most, float whole) {
-  Step &step = steps_.back();
-  step.survived = probability, step.most = most, step.whole = whole;
+                      float share, int32_t absorption, uint32_t ray_kind) {
+  open_ = chose_alike(gem, sp, transmission);
+  if (open_) steps_.push_back({hit.instance, material, ray_kind, sp.backfacing, transmission, absorption, share, gem});
 }
 
 bool ColourTrail::follow(const Scene &scene, const Wavelengths &w, int32_t absorption, uint32_t ray_kind, int k, End &end,
@@ -66,7 +60,7 @@ bool ColourTrail::follow(const Scene &scene, const Wavelengths &w, int32_t absor
     as_hero *= correction;
     end.ray = leave_surface(scene, end.ray, sp, wi);
     if (step.survived > 0) {
-      const float survives = std::min(step.most, as_hero / step.whole);
+      const float survives = std::min(kMostSurvive, as_hero / whole_);
       end.flux /= step.survived;
       end.path_pdf *= survives / step.survived;
       as_hero /= survives;

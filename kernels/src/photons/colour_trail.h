@@ -7,7 +7,7 @@
 // is given up; as the hero of its own photon it would part from this one at the same place, so that the wavelengths which
 // belong together are the same whoever leads, and the balance heuristic over them counts everything once (Wilkie et al. 2014,
 // section 4, applied to a path that wavelengths share by its events instead of its points). What dispersion mixes again on a
-// pixel is so sampled by up to eight wavelengths a photon, at no cost for photons that leave nothing.
+// pixel is so sampled by up to eight wavelengths a photon; photons that leave nothing only note where they went.
 #pragma once
 
 #include "bsdf/closure.h"
@@ -18,18 +18,22 @@
 
 namespace opal {
 
+constexpr float kMostSurvive = 0.98f;  // of photons, by the roulette of the tracer
+
 class ColourTrail {
  public:
   bool open() const { return open_; }
   void close() { open_ = false; }
-  // At the refraction that parts the wavelengths: what they had until then, relative to the hero's probability.
-  void start(const Ray &arrived, const ShadingPoint &sp, const GemBoundary &gem, bool transmission, const Spectrum &flux,
-             const Spectrum &path_pdf);
+  // At the refraction that parts the wavelengths, which the hero chose with probability `share`: what they had until then,
+  // relative to the hero's probability, and the flux that the photon set out with.
+  void start(const Ray &arrived, const ShadingPoint &sp, const GemBoundary &gem, bool transmission, float share,
+             const Spectrum &flux, const Spectrum &path_pdf, float set_out);
   // A later boundary, reached by a ray of this kind through what absorbs by this table, or -1.
-  void add(const Hit &hit, uint32_t material, const ShadingPoint &sp, const GemBoundary &gem, bool transmission,
+  void add(const Hit &hit, uint32_t material, const ShadingPoint &sp, const GemBoundary &gem, bool transmission, float share,
            int32_t absorption, uint32_t ray_kind);
-  // The hero has survived with this probability; every wavelength does by the same rule: min(most, its flux as a hero / whole).
-  void survived(float probability, float most, float whole);
+  // The hero has survived the roulette with this probability. Each wavelength would by the same rule: kMostSurvive, or less if
+  // it carries less as a hero than what the photon set out with.
+  void survived(float probability) { steps_.back().survived = probability; }
 
   // Follows wavelength k to where the hero is now. False: it does not get there. Its flux and probability are relative to
   // the hero's probability, as the hero's own are.
@@ -47,14 +51,15 @@ class ColourTrail {
     bool backfacing, transmission;
     int32_t absorption;  // of what the way to it leads through
     float hero_share;
-    float survived, most, whole;  // survived: 0 without roulette
     GemBoundary gem;
+    float survived = 0;  // 0 without roulette
   };
 
   bool open_ = false;
   Ray arrived_;
   ShadingPoint first_;
   Spectrum flux_, path_pdf_;
+  float whole_ = 0;          // flux of one wavelength with which the roulette spares all it can
   std::vector<Step> steps_;  // the first is where it starts
 };
 

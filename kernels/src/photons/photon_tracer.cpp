@@ -13,7 +13,6 @@ namespace {
 
 constexpr int kMaxEvents = 32768;
 constexpr int kRouletteStart = 6;
-constexpr float kMostSurvive = 0.98f;
 constexpr float kNothing = 0x1p-40f;  // of what a photon set out with: no sum of floats sees it
 constexpr float kUnseenUse = 0.25f;   // of a photon that the camera does not see at first hand: glass and mirrors may show it
 
@@ -90,8 +89,8 @@ class PhotonPath {
     const uint32_t kind = sharp_events_ + rough_events_ == 0 ? uint32_t(OPAL_RAY_ALL & ~OPAL_RAY_CAMERA) : ray_kind_;
     const Hit hit = next_hit(scene_, ray_, kind);
     ++out_.rays;
-    if (!media_.empty()) trail_.close();
     if (!media_.empty()) {
+      trail_.close();
       bool alive = true;
       const uint32_t dimension = bounce_dimension(events, 0);
       const bool ended_there = any_varies(scene_, media_) ? travel_in_varying_medium(hit.t, dimension, alive)
@@ -157,7 +156,7 @@ class PhotonPath {
     if (sharp_events_ + rough_events_ >= kRouletteStart) {
       const float survive = std::min(kMostSurvive, flux_.max() / (path_pdf_.average() * start_));
       if (!(sampler_.get1d(dimension + kDimRoulette) < survive)) return false;
-      if (trail_.open()) trail_.survived(survive, kMostSurvive, start_ / kWavelengths);
+      if (trail_.open()) trail_.survived(survive);
       flux_ *= 1 / survive;
     }
     return true;
@@ -169,9 +168,10 @@ class PhotonPath {
     const GemBoundary &gem = surface_.closures.gem;
     const bool transmission = sample.scattering & kScatterTransmit;
     if (trail_.open())
-      trail_.add(hit, surface_.material, surface_.sp, gem, transmission, absorption_table(scene_, interior_), ray_kind_);
+      trail_.add(hit, surface_.material, surface_.sp, gem, transmission, sample.pdf[0], absorption_table(scene_, interior_),
+                 ray_kind_);
     else if ((sample.scattering & kScatterDispersive) && media_.empty() && path_pdf_[kWavelengths - 1] > 0)
-      trail_.start(ray_, surface_.sp, gem, transmission, flux_, path_pdf_);
+      trail_.start(ray_, surface_.sp, gem, transmission, sample.pdf[0], flux_, path_pdf_, start_);
   }
 
   // Through media up to t_end. True: the way ended before, with a scattering (alive) or an absorption.

@@ -73,11 +73,12 @@ inline Spectrum index_of_refraction(const Scene &scene, const InteriorStack::Ent
   return lookup(scene.spectra[size_t(scene.materials[entry->material].gem.index_spectrum)], w);
 }
 
-// Beer-Lambert over `distance` metres of the interior that counts.
-inline int32_t absorption_table(const Scene &scene, const InteriorStack &interior) {  // -1: none
+// The table of what the interior that counts absorbs, 1/m; -1: none.
+inline int32_t absorption_table(const Scene &scene, const InteriorStack &interior) {
   const InteriorStack::Entry *entry = interior.current();
   return entry ? scene.materials[entry->material].gem.absorption_spectrum : -1;
 }
+// Beer-Lambert over `distance` metres of it.
 inline void absorb(const Scene &scene, const InteriorStack &interior, float distance, const Wavelengths &w,
                    Spectrum &throughput) {
   const int32_t table = absorption_table(scene, interior);
