@@ -17,7 +17,7 @@ ESCAPE_SECONDS = 1.0
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory):
-    result, printed = drive(tmp_path_factory.mktemp("profile"), SCREENSHOTS / "keys", script="keys.py")
+    result, printed = drive(tmp_path_factory.mktemp("keys"), script="keys.py", keep=SCREENSHOTS / "keys")
     assert "Traceback" not in printed, printed[-4000:]
     return result
 

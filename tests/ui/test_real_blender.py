@@ -12,12 +12,12 @@ from real_blender import SCREENSHOTS, drive
 
 @pytest.fixture(scope="module")
 def background(tmp_path_factory):
-    return drive(tmp_path_factory.mktemp("profile"), SCREENSHOTS / "background", "--background")
+    return drive(tmp_path_factory.mktemp("background"), "--background", keep=SCREENSHOTS / "background")
 
 
 @pytest.fixture(scope="module")
 def windowed(tmp_path_factory):
-    return drive(tmp_path_factory.mktemp("profile"), SCREENSHOTS / "window")
+    return drive(tmp_path_factory.mktemp("window"), keep=SCREENSHOTS / "window")
 
 
 def test_the_zip_renders_the_first_scene_without_a_window(background):

@@ -3,35 +3,13 @@
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
-from pathlib import Path
-
 import pytest
-
-HERE = Path(__file__).resolve().parent
-ROOT = HERE.parent.parent
-BLENDER = ROOT.parent / "shared" / "tools" / "real-blender"
+from real_blender import drive
 
 
 @pytest.fixture(scope="module")
 def smoke(tmp_path_factory):
-    if not BLENDER.exists():
-        pytest.skip("no real Blender on this machine: shared/tools/real-blender is absent")
-    zips = sorted((ROOT / "dist").glob("opal-*.zip"))
-    if not zips:
-        pytest.skip("dist/ holds no zip: run `make test`")
-    folder = tmp_path_factory.mktemp("smoke")
-    environment = os.environ | {"BLENDER_USER_RESOURCES": str(tmp_path_factory.mktemp("profile"))}
-    environment.pop("PYTHONPATH", None)
-    script = ["--background", "--factory-startup", "--python", str(HERE / "smoke.py"), "--", str(zips[-1]), str(folder)]
-    run = subprocess.run([str(BLENDER), *script], cwd=ROOT, env=environment, capture_output=True, text=True, timeout=300)
-    printed = run.stdout + run.stderr
-    assert (folder / "result.json").exists(), f"no result; exit {run.returncode}\n{printed[-4000:]}"
-    found = json.loads((folder / "result.json").read_text())
-    assert "error" not in found, f"{found.get('error')}\n{printed[-4000:]}"
-    return found
+    return drive(tmp_path_factory.mktemp("smoke"), "--background", "--factory-startup", script="smoke.py")[0]
 
 
 def test_the_simulation_made_smoke(smoke):
