@@ -53,31 +53,60 @@ PhaseFunction PhaseFunction::table(const PhaseTable &t) {
   p.cosines_.resize(n);
   for (size_t i = 0; i < n; ++i) p.cosines_[n - 1 - i] = float(std::cos(double(t.angles[i])));
   p.cosines_.front() = -1, p.cosines_.back() = 1;
+  p.build_guide();
   const auto reversed = [&](const float *from, float least) {  // over ascending cosines
     std::vector<float> to(places * rows * n);
     for (size_t r = 0; r < places * rows; ++r)
       for (size_t i = 0; i < n; ++i) to[r * n + n - 1 - i] = std::max(least, from[r * n + i]);
     return to;
   };
-  std::vector<float> every = reversed(t.values, 0);
-  if (t.polarization) p.degree_ = reversed(t.polarization, -1);
-  p.values_.assign(rows * n, 0.0f);
+  const auto by_angle = [&](const std::vector<float> &from) {
+    std::vector<float> to(from.size());
+    for (size_t place = 0; place < from.size() / (rows * n); ++place)
+      for (size_t r = 0; r < rows; ++r)
+        for (size_t i = 0; i < n; ++i) to[p.slot(place, i) + r] = from[(place * rows + r) * n + i];
+    return to;
+  };
+  std::vector<float> every = reversed(t.values, 0), mean(rows * n, 0.0f);
+  if (t.polarization) p.degree_ = by_angle(reversed(t.polarization, -1));
   p.cumulative_.resize(rows * n);
   for (size_t r = 0; r < places * rows; ++r) {
     p.normalise(&every[r * n], nullptr);
-    float *mean = &p.values_[r % rows * n];
-    for (size_t i = 0; i < n; ++i) mean[i] += every[r * n + i];
+    for (size_t i = 0; i < n; ++i) mean[r % rows * n + i] += every[r * n + i];
   }
-  for (size_t r = 0; r < rows; ++r) p.normalise(&p.values_[r * n], &p.cumulative_[r * n]);
+  for (size_t r = 0; r < rows; ++r) p.normalise(&mean[r * n], &p.cumulative_[r * n]);
+  p.values_ = by_angle(mean);
   if (places > 1) {
-    p.oriented_ = std::move(every);
+    p.oriented_ = by_angle(every);
     p.elevations_.assign(t.elevations, t.elevations + std::max(1, t.n_elevations));
     p.clocks_.assign(t.clocks, t.clocks + std::max(1, t.n_clocks));
   }
   return p;
 }
 
+// Two nodes a step on the mean: what is left to search is short.
+void PhaseFunction::build_guide() {
+  const size_t steps = std::max<size_t>(1, cosines_.size() / 2);
+  guide_.resize(steps + 1);
+  for (size_t i = 0; i <= steps; ++i) {
+    const float cosine = -1 + 2 * float(i) / float(steps);
+    guide_[i] = uint32_t(std::upper_bound(cosines_.begin() + 1, cosines_.end() - 1, cosine) - cosines_.begin());
+  }
+  const float span = wavelengths_.back() - wavelengths_.front();
+  if (n_rows_ < 2 || !(span > 0)) return;
+  const float per_nm = float(n_rows_ - 1) / span;
+  for (int i = 0; i < n_rows_; ++i)
+    if (std::abs((wavelengths_[size_t(i)] - wavelengths_[0]) * per_nm - float(i)) > 1e-4f) return;
+  per_nm_ = per_nm;
+}
+
 void PhaseFunction::rows(float nm, int &first, int &second, float &weight) const {
+  if (per_nm_ > 0) {
+    const float x = clamp((nm - wavelengths_[0]) * per_nm_, 0.0f, float(n_rows_ - 1));
+    first = std::min(int(x), n_rows_ - 2), second = first + 1;
+    weight = x - float(first);
+    return;
+  }
   const auto it = std::upper_bound(wavelengths_.begin(), wavelengths_.end(), nm);
   second = std::clamp(int(it - wavelengths_.begin()), 0, n_rows_ - 1);
   first = std::max(0, int(it - wavelengths_.begin()) - 1);
@@ -86,27 +115,25 @@ void PhaseFunction::rows(float nm, int &first, int &second, float &weight) const
 }
 
 size_t PhaseFunction::interval(float cosine, float &within) const {
-  const auto it = std::upper_bound(cosines_.begin() + 1, cosines_.end() - 1, cosine);
+  const size_t steps = guide_.size() - 1;
+  const size_t step = size_t(clamp(0.5f * (cosine + 1) * float(steps), 0.0f, float(steps - 1)));
+  // One step to either side makes up for rounding.
+  const uint32_t low = guide_[step > 0 ? step - 1 : 0], high = guide_[std::min(step + 2, steps)];
+  const auto it = std::upper_bound(cosines_.begin() + low, cosines_.begin() + std::min<size_t>(high, cosines_.size() - 1), cosine);
   const size_t i = size_t(it - cosines_.begin());
   const float span = cosines_[i] - cosines_[i - 1];
   within = span > 0 ? saturate((cosine - cosines_[i - 1]) / span) : 0.0f;
   return i - 1;
 }
 
-float PhaseFunction::row_value(int row, float cosine) const {
-  float within;
-  const float *v = &values_[size_t(row) * size_t(n_nodes_) + interval(cosine, within)];
-  return lerp(v[0], v[1], within);
-}
-
 float PhaseFunction::row_sample(int row, float u) const {
   const float *c = &cumulative_[size_t(row) * size_t(n_nodes_)];
-  const float *v = &values_[size_t(row) * size_t(n_nodes_)];
   const size_t i = size_t(std::upper_bound(c + 1, c + n_nodes_ - 1, u) - c);
   // Within the interval the density is linear: solve the quadratic for the part of its mass below u.
   const float span = cosines_[i] - cosines_[i - 1], mass = c[i] - c[i - 1];
   if (!(span > 0) || !(mass > 0)) return cosines_[i - 1];
-  const float target = saturate((u - c[i - 1]) / mass), a = v[i - 1], b = v[i];
+  const float target = saturate((u - c[i - 1]) / mass);
+  const float a = values_[slot(0, i - 1) + size_t(row)], b = values_[slot(0, i) + size_t(row)];
   const float root = safe_sqrt(lerp(a * a, b * b, target));
   const float t = a + root > 0 ? target * (a + b) / (a + root) : target;
   return clamp(cosines_[i - 1] + span * saturate(t), -1.0f, 1.0f);
@@ -119,9 +146,10 @@ float PhaseFunction::value(float nm, float cosine) const {
     case PhaseKind::Rayleigh: return 0.75f * kInv4Pi * (1 + cosine * cosine);
     case PhaseKind::Table: {
       int first, second;
-      float weight;
+      float weight, within;
       rows(nm, first, second, weight);
-      return lerp(row_value(first, cosine), row_value(second, cosine), weight);
+      const float *near = &values_[slot(0, interval(cosine, within))], *far = near + n_rows_;
+      return lerp(lerp(near[first], far[first], within), lerp(near[second], far[second], within), weight);
     }
   }
   return 0;
@@ -130,7 +158,14 @@ float PhaseFunction::value(float nm, float cosine) const {
 Spectrum PhaseFunction::value(const Wavelengths &w, float cosine) const {
   if (kind_ != PhaseKind::Table) return Spectrum(value(w.nm[0], cosine));
   Spectrum s;
-  for (int i = 0; i < kWavelengths; ++i) s[i] = value(w.nm[i], cosine);
+  float within;
+  const float *near = &values_[slot(0, interval(cosine, within))], *far = near + n_rows_;
+  for (int i = 0; i < kWavelengths; ++i) {
+    int first, second;
+    float weight;
+    rows(w.nm[i], first, second, weight);
+    s[i] = lerp(lerp(near[first], far[first], within), lerp(near[second], far[second], within), weight);
+  }
   return s;
 }
 
@@ -173,7 +208,7 @@ Spectrum PhaseFunction::scattered(const Wavelengths &w, const Vec3 &light, const
   float weight[4];
   const int n = places(light, onward, place, weight);
   float within;
-  const size_t node = interval(cosine, within), row_size = size_t(n_nodes_);
+  const size_t node = interval(cosine, within);
   // Light fully perpendicular and fully parallel pass by these; mixtures by the mixture.
   const float passed = filtered && !degree_.empty() ? filter->factor(1, light, onward) - 1 : 0.0f;
   Spectrum sum(0.0f);
@@ -183,9 +218,9 @@ Spectrum PhaseFunction::scattered(const Wavelengths &w, const Vec3 &light, const
     rows(w.nm[k], row[0], row[1], second);
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < 2; ++j) {
-        const size_t at = (place[i] * size_t(n_rows_) + size_t(row[j])) * row_size + node;
-        float v = lerp(table[at], table[at + 1], within);
-        if (passed != 0) v *= 1 + passed * lerp(degree_[at], degree_[at + 1], within);
+        const size_t at = slot(place[i], node) + size_t(row[j]), next = at + size_t(n_rows_);
+        float v = lerp(table[at], table[next], within);
+        if (passed != 0) v *= 1 + passed * lerp(degree_[at], degree_[next], within);
         sum[k] += weight[i] * (j ? second : 1 - second) * v;
       }
   }

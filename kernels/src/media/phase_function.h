@@ -10,6 +10,7 @@
 #include "core/spectrum.h"
 #include "core/vec.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace opal {
@@ -67,7 +68,9 @@ class PhaseFunction {
   void rows(float nm, int &first, int &second, float &weight) const;
   // The interval of the cosines, and where in it.
   size_t interval(float cosine, float &within) const;
-  float row_value(int row, float cosine) const;
+  void build_guide();
+  // Between two rows at the same angle: where the tables keep them (place, 0 for round particles; node of the cosines).
+  size_t slot(size_t place, size_t node) const { return (place * size_t(n_nodes_) + node) * size_t(n_rows_); }
   float row_sample(int row, float u) const;  // cosine
   void normalise(float *row, float *cumulative) const;
   // Four corners of (elevation, clock) with weights, for light from somewhere seen from somewhere; 1 for round particles.
@@ -76,11 +79,13 @@ class PhaseFunction {
   PhaseKind kind_ = PhaseKind::Isotropic;
   float g_ = 0;
   int n_rows_ = 0, n_nodes_ = 0;
+  float per_nm_ = 0;  // rows a nm where the wavelengths are equally spaced, else 0
   std::vector<float> wavelengths_;
   std::vector<float> cosines_;              // ascending, -1 .. 1
-  std::vector<float> values_;               // n_rows_ x n_nodes_, over cosines_
+  std::vector<uint32_t> guide_;             // over equal steps of the cosine: the first node beyond each step's begin
+  std::vector<float> values_;               // n_nodes_ x n_rows_: a path asks for many wavelengths at one angle
   std::vector<float> elevations_, clocks_;  // empty for round particles
-  std::vector<float> oriented_;             // elevations x clocks x n_rows_ x n_nodes_, empty for round particles
+  std::vector<float> oriented_;             // elevations x clocks x n_nodes_ x n_rows_, empty for round particles
   std::vector<float> degree_;               // of polarisation, as oriented_ or as values_; may be empty
   std::vector<float> cumulative_;           // n_rows_ x n_nodes_, 0 .. 1
 };
