@@ -170,7 +170,7 @@ class OpalWorldProperties(bpy.types.PropertyGroup):
     )
     base_height: FloatProperty(
         name="Base Height",
-        description="Height from which on the density falls; below it stays as it is",
+        description="Height from which on the density falls; below it stays as it is, down to the ground under everything in the scene",
         default=0.0,
         subtype="DISTANCE",
     )

@@ -134,7 +134,8 @@ enum { OPAL_EMISSION_AS_DENSITY = 0, OPAL_EMISSION_EVERYWHERE = 1, OPAL_EMISSION
  *   HOMOGENEOUS  1;
  *   NOISE        clamp(1/2 + contrast (n - 1/2), 0, 1) of fractal gradient noise n in [0, 1] with lumps of noise_scale;
  *   GRID         the value of density_grid;
- *   HEIGHT       exp(-(z - base_height) / scale_height) above base_height, 1 below;
+ *   HEIGHT       exp(-(z - base_height) / scale_height) above base_height, 1 below; as the world's medium it scatters nothing
+ *                below base_height and everything in the scene: the ground goes on beyond what is modelled of it;
  * plus the colours that scattering_grid and absorption_grid hold (1/m); emission_grid adds radiance per metre. */
 typedef struct opal_medium_desc {
   int32_t extinction; /* sigma_t, 1/m */

@@ -7,7 +7,9 @@
 // Dispersion sets path_pdf of the other wavelengths to 0 and so leaves the hero alone with its full weight.
 #include "integrator/path_tracer.h"
 
+#include "integrator/sun_guide.h"
 #include "integrator/surface.h"
+#include "media/stratified.h"
 #include "photons/gather.h"
 #include "scene/contact.h"
 #include "photons/volume_estimate.h"
@@ -16,6 +18,8 @@ namespace opal {
 namespace {
 
 constexpr uint32_t kRouletteStart = 4;  // events before Russian roulette sets in
+constexpr uint32_t kGuidedEvents = 8;   // from the camera on: how many may be led to where the suns' light is scattered from
+constexpr float kGuidedPart = 0.25f;
 constexpr uint32_t kMaxEvents = 32768;  // nothing physical gets there; guards against loops of free passes
 
 // Where the path last scattered, as the light sampler saw it.
@@ -89,7 +93,7 @@ class CameraPath {
     if (!media_.empty()) {
       if (travel_in_medium(hit.t)) return;
     } else {
-      meet_lamps(hit.t, Spectrum(0.0f));
+      meet_lamps(hit.t, nullptr);
     }
     if (!hit.valid()) {
       escape();
@@ -129,13 +133,13 @@ class CameraPath {
 
   // ---- Light that the ray meets ----
 
-  // Lamps before t_end; `extinction` is that of the media in which the ray runs.
-  void meet_lamps(float t_end, const Spectrum &extinction) {
+  // Lamps before t_end; `media`, if there are any, in which the ray runs.
+  void meet_lamps(float t_end, const StratifiedMedia *media) {
     float after = ray_.t_min;
     LampHit lamp;
     while (intersect_lamps(scene_, ray_, after, t_end, ray_kind_, w_, lamp)) {
       const SourceId source{SourceKind::Lamp, lamp.lamp};
-      const Unscattered passed(*this, extinction, lamp.t);
+      const Unscattered passed(*this, media ? media->depth(lamp.t) : Spectrum(0.0f));
       add_met(source, lamp.radiance, ray_.origin + ray_.direction * lamp.t, lamp.normal, lamp.t + travelled_);
       after = std::nextafter(lamp.t, kInfinity);
     }
@@ -201,8 +205,7 @@ class CameraPath {
     }
 
     BsdfSample sample;
-    if (!bsdf_sample(set, surface_.sp, w_, Transport::Radiance, sampler_.get1d(dimension + kDimBsdfLobe),
-                     sampler_.get2d(dimension + kDimBsdf), sample)) {
+    if (!sample_surface(dimension, sample)) {
       alive_ = false;
       return;
     }
@@ -262,6 +265,39 @@ class CameraPath {
     roulette(sampler_.get1d(dimension + kDimRoulette));
   }
 
+  // By the surface, or, where a medium before a diffuse one scatters a sun's light to it, from there.
+  bool sample_surface(uint32_t dimension, BsdfSample &sample) const {
+    MediumHere here;
+    const SunGuide guided = surface_guide(here);
+    const float pick = sampler_.get1d(dimension + kDimBsdfLobe);
+    const Vec2 u = sampler_.get2d(dimension + kDimBsdf);
+    Spectrum value;
+    if (guided.part() > 0 && sampler_.get1d(dimension + kDimTransparency) < guided.part()) {
+      sample.wi = guided.sample(w_, pick, u);
+      value = bsdf_eval(surface_.closures, surface_.sp, sample.wi, w_, Transport::Radiance, sample.pdf);
+      sample.scattering = kScatterDiffuse | (dot(sample.wi, surface_.sp.ng) > 0 ? kScatterReflect : kScatterTransmit);
+      if (value.is_zero()) return false;
+    } else {
+      if (!bsdf_sample(surface_.closures, surface_.sp, w_, Transport::Radiance, pick, u, sample)) return false;
+      if (!(guided.part() > 0)) return true;
+      if (sample.scattering & (kScatterTransparent | kScatterSpecular)) {
+        sample.weight /= 1 - guided.part();
+        return true;
+      }
+      value = sample.weight * sample.pdf[0];
+    }
+    sample.pdf = guided.joined(w_, sample.wi, sample.pdf);
+    sample.weight = value / sample.pdf[0];
+    return true;
+  }
+
+  // `here` has to outlive the guide.
+  SunGuide surface_guide(MediumHere &here) const {
+    if (media_.empty() || surface_.is_gem || bounces_ >= kGuidedEvents || !bsdf_is_only_diffuse(surface_.closures)) return {};
+    here = medium_here(scene_, media_, w_);
+    return {scene_.lights.get(), here, w_, kGuidedPart};
+  }
+
   void update_path_pdf(const BsdfSample &sample) {
     if (!(sample.pdf[0] > 0)) return;
     for (int i = 0; i < kWavelengths; ++i) path_pdf_[i] *= sample.pdf[i] / sample.pdf[0];
@@ -270,9 +306,10 @@ class CameraPath {
       if (path_pdf_[i] <= 0) throughput_[i] = 0;
   }
 
-  void roulette(float u) {
+  // `promise`: how much more than usual the way it has taken may bring.
+  void roulette(float u, float promise = 1) {
     if (bounces_ < kRouletteStart) return;
-    const float q = clamp((throughput_.max() * eta_scale_) / path_pdf_.average(), 0.0f, 1.0f);
+    const float q = clamp((throughput_.max() * eta_scale_ * promise) / path_pdf_.average(), 0.0f, 1.0f);
     // Where nothing is lost, a small chance to stop keeps the longest chains finite.
     // In the world's own medium, which has no end, paths that absorb nothing would wander away for ever.
     const bool endless = media_.count() == 1 && media_[0].instance == ~0u && rough_in_medium_;
@@ -326,7 +363,10 @@ class CameraPath {
     Passage through;
     if (!passes(offset_origin(sp, sample.wi), sample, dimension + kDimLight, through)) return;
     Spectrum pdf = path_pdf_ * through.light_pdf * sample.pdf;
-    if (!sample.dirac) pdf += path_pdf_ * value.pdf * through.path_pdf;
+    if (!sample.dirac) {
+      MediumHere here;
+      pdf += path_pdf_ * surface_guide(here).joined(w_, sample.wi, value.pdf) * through.path_pdf;
+    }
     contribution *= uplift(through.surfaces, w_) * through.medium / pdf.average();
     const LayerTracker before = layers_;
     if (keeps_layers_) layers_ = layers_after_surface(sample.wi, 0);
@@ -346,12 +386,12 @@ class CameraPath {
 
   // ---- Media ----
 
-  // For as long as it lives, throughput and densities are those of having come `t` metres without an event.
+  // For as long as it lives, throughput and densities are those of having come through an optical depth without an event.
   class Unscattered {
    public:
-    Unscattered(CameraPath &path, const Spectrum &extinction, float t)
+    Unscattered(CameraPath &path, const Spectrum &depth)
         : path_(path), throughput_(path.throughput_), path_pdf_(path.path_pdf_), pdf_(path.last_.pdf) {
-      path.pass_unscattered(extinction, t);
+      path.pass_unscattered(depth);
     }
     ~Unscattered() { path_.throughput_ = throughput_, path_.path_pdf_ = path_pdf_, path_.last_.pdf = pdf_; }
     Unscattered(const Unscattered &) = delete;
@@ -363,13 +403,13 @@ class CameraPath {
   };
 
   // Coming through without an event has probability T(hero).
-  void pass_unscattered(const Spectrum &extinction, float t) {
-    if (extinction[0] <= 0 && extinction.max() <= 0) return;
+  void pass_unscattered(const Spectrum &depth) {
+    if (depth.max() <= 0) return;
     for (int i = 0; i < kWavelengths; ++i) {
-      const float ratio = std::exp(clamp((extinction[0] - extinction[i]) * t, -80.0f, 80.0f));
+      const float ratio = depth[i] == depth[0] ? 1.0f : std::exp(clamp(depth[0] - depth[i], -80.0f, 80.0f));
       throughput_[i] *= ratio, path_pdf_[i] *= ratio;
     }
-    last_.pdf *= std::exp(-extinction[0] * t);
+    last_.pdf *= std::exp(-depth[0]);
   }
 
   // For as long as it lives, light that is added comes from an event in a medium.
@@ -390,29 +430,32 @@ class CameraPath {
 
   // Carries the ray through its media up to t_end. True: it was scattered or absorbed on the way.
   bool travel_in_medium(float t_end) {
-    if (any_varies(scene_, media_)) return travel_in_varying_medium(t_end);
-    const MediumHere here = medium_here(scene_, media_, w_);
+    if (!StratifiedMedia::holds(scene_, media_)) return travel_in_varying_medium(t_end);
+    const StratifiedMedia media(scene_, media_, w_, ray_);
+    const MediumHere &full = media.full();
     const uint32_t dimension = bounce_dimension(events_, 0);
     const bool may_go_on = may_scatter_again();
-    if (!here.emission.is_zero()) add_emitted(here, t_end);
-    if (here.scatters() && !final_ray_) {
-      gather_along(here, t_end, dimension);
-      gather_volume(CameraWay(here), t_end, layer_of(here), dimension);
+    if (!full.emission.is_zero()) add_emitted(full, t_end);
+    if (full.scatters() && !final_ray_) {
+      gather_along(media, t_end, dimension);
+      gather_volume(CameraWay(media), t_end, layer_of(full), dimension);
     }
 
-    const float sigma = here.extinction[0];
-    const float t = sigma > 0 ? -std::log1p(-sampler_.get1d(dimension + kDimMedium)) / sigma : kInfinity;
-    meet_lamps(std::min(t, t_end), here.extinction);
+    const float t = media.reach_hero(-std::log1p(-sampler_.get1d(dimension + kDimMedium)));
+    meet_lamps(std::min(t, t_end), &media);
     if (!(t < t_end)) {
-      if (std::isfinite(t_end)) {
-        pass_unscattered(here.extinction, t_end);
-        if (keeps_layers_) layers_.pass_media(transmittance_over(here.replaced, t_end));
-      } else if (sigma > 0) {
-        layers_.meet_medium(layer_of(here));
+      const Spectrum depth = media.depth(t_end);
+      if (std::isfinite(depth[0])) {
+        pass_unscattered(depth);
+        if (keeps_layers_) layers_.pass_media(media.replaced_transmittance(t_end));
+      } else {
+        layers_.meet_medium(layer_of(full));
         alive_ = false;
       }
       return !alive_;
     }
+    MediumHere scratch;
+    const MediumHere &here = media.at(t, scratch);
     if (final_ray_ || !(here.scattering[0] > 0)) {
       layers_.meet_medium(layer_of(here));
       alive_ = false;
@@ -420,15 +463,14 @@ class CameraPath {
     }
     if (!may_scatter(may_go_on)) return true;
 
-    const GatherDistance gathered(scene_, ray_, t_end, here.extinction.average());
-    const Spectrum through = transmittance_over(here.extinction, t);
-    const float distance_pdf = sigma * through[0];
+    const GatherDistance gathered(scene_, ray_, t_end, media);
+    const Spectrum through = media.transmittance(t);
+    const float distance_pdf = here.extinction[0] * through[0];
     previous_pdf_ = path_pdf_ * (gathered.density(t) / distance_pdf);
-    float phase_pdf = 0;
     const Vec3 forward = ray_.direction;
-    const Vec3 direction = here.sample_phase(w_, forward, sampler_.get1d(dimension + kDimBsdfLobe),
-                                             sampler_.get2d(dimension + kDimMediumPhase), phase_pdf);
-    const Spectrum phase = here.phase_value(w_, dot(forward, direction));
+    Spectrum phase;
+    const Vec3 direction = sample_onward(here, forward, dimension, phase);
+    const float phase_pdf = phase[0];
     if (!(phase_pdf > 0) || !(distance_pdf > 0)) {
       alive_ = false;
       return true;
@@ -452,7 +494,7 @@ class CameraPath {
     ray_kind_ = OPAL_RAY_SCATTER;
     ray_ = {last_.p, direction, 0, kInfinity, ray_.time};
     travelled_ = 0;
-    roulette(sampler_.get1d(dimension + kDimRoulette));
+    roulette(sampler_.get1d(dimension + kDimRoulette), promise(here, direction));
     return true;
   }
 
@@ -471,6 +513,31 @@ class CameraPath {
   // Whether photons bring what this source scatters directly into the ray.
   bool brought_to_medium(const SourceId &source) const {
     return brought_by_photons(scene_, settings_.photons_carry, EventClass::Rough, rough_events_ > 0, source);
+  }
+
+  // Of events in media, as many as show specks; over many the guide's weights would add up.
+  SunGuide guide(const MediumHere &here) const {
+    return bounces_ < kGuidedEvents ? SunGuide(scene_.lights.get(), here, w_, kGuidedPart) : SunGuide();
+  }
+  // Where a path goes on after an event in a medium: by the phase function or where the sun is scattered to. `density` at every
+  // wavelength.
+  Vec3 sample_onward(const MediumHere &here, const Vec3 &forward, uint32_t dimension, Spectrum &density) const {
+    const SunGuide guided = guide(here);
+    float u = sampler_.get1d(dimension + kDimTransparency), unused = 0;
+    const float pick = sampler_.get1d(dimension + kDimBsdfLobe);
+    const Vec2 at = sampler_.get2d(dimension + kDimMediumPhase);
+    const Vec3 direction = u < guided.part() ? guided.sample(w_, pick, at) : here.sample_phase(w_, forward, pick, at, unused);
+    density = guided.joined(w_, direction, here.phase_value(w_, dot(forward, direction)));
+    return direction;
+  }
+  // Towards a sun the next event brings as much more as the phase function is higher there than on the mean.
+  float promise(const MediumHere &here, const Vec3 &direction) const {
+    const SunGuide guided = guide(here);
+    return guided.part() > 0 ? std::max(1.0f, 4 * kPi * guided.density(w_, direction)[0]) : 1.0f;
+  }
+  // The density with which sample_onward() chooses.
+  Spectrum onward_density(const MediumHere &here, const Vec3 &forward, const Vec3 &direction) const {
+    return guide(here).joined(w_, direction, here.phase_value(w_, dot(forward, direction)));
   }
 
   // The camera's filter where the camera sees a scattering at first hand. What lights it is taken as unpolarised.
@@ -530,14 +597,12 @@ class CameraPath {
     if (!lamps.empty()) last_.elsewhere = lamps.density(t) / std::max(straight, 1e-30f);
     connect_from_medium(here, forward, dimension);
 
-    float phase_pdf = 0;
-    const Vec3 direction = here.sample_phase(w_, forward, sampler_.get1d(dimension + kDimBsdfLobe),
-                                             sampler_.get2d(dimension + kDimMediumPhase), phase_pdf);
+    const Vec3 direction = sample_onward(here, forward, dimension, last_.phase);
+    const float phase_pdf = last_.phase[0];
     if (!(phase_pdf > 0)) {
       alive_ = false;
       return true;
     }
-    last_.phase = here.phase_value(w_, dot(forward, direction));
     last_.pdf = phase_pdf;
     previous_pdf_ = path_pdf_;
     throughput_ *= here.scattered(w_, -direction, -forward, filter()) / phase_pdf;
@@ -553,7 +618,7 @@ class CameraPath {
     ray_kind_ = OPAL_RAY_SCATTER;
     ray_ = {last_.p, direction, 0, kInfinity, ray_.time};
     travelled_ = 0;
-    roulette(sampler_.get1d(dimension + kDimRoulette));
+    roulette(sampler_.get1d(dimension + kDimRoulette), promise(here, direction));
     return true;
   }
 
@@ -564,7 +629,7 @@ class CameraPath {
                       sampler_.get2d(dimension + kDimLight), w_, ray_.time, sample) ||
         !(sample.pdf > 0) || !(sample.visibility & OPAL_RAY_SCATTER) || brought_to_medium(sample.source))
       return;
-    const Spectrum phase = here.phase_value(w_, dot(forward, sample.wi));
+    const Spectrum phase = onward_density(here, forward, sample.wi);
     const Spectrum share = last_.share(sample.dirac ? Spectrum(0.0f) : phase, sample.pdf);
     const Spectrum scattered = here.scattered(w_, -sample.wi, -forward, filter());
     const InMedium scope(*this, layer_of(here, -sample.wi, -forward));
@@ -592,7 +657,7 @@ class CameraPath {
     float depth = 0;
     pass_through(media, t, random, walk, depth);
     if (walk.throughput.is_zero()) return;
-    const Spectrum phase = here.phase_value(w_, dot(ray_.direction, sample.wi));
+    const Spectrum phase = onward_density(here, ray_.direction, sample.wi);
     LastEvent there;
     there.elsewhere = distance_pdf / std::max(here.extinction.average() * std::exp(-depth), 1e-30f);
     Spectrum share = there.share(sample.dirac ? Spectrum(0.0f) : phase, sample.pdf);
@@ -629,8 +694,8 @@ class CameraPath {
 
   // Light that reaches the segment directly and is scattered once into it: the other half of hitting a source after a
   // scattering event, joined with it by multiple importance.
-  void gather_along(const MediumHere &here, float t_end, uint32_t dimension) {
-    const GatherDistance distances(scene_, ray_, t_end, here.extinction.average());
+  void gather_along(const StratifiedMedia &media, float t_end, uint32_t dimension) {
+    const GatherDistance distances(scene_, ray_, t_end, media);
     float distance_pdf = 0;
     const Vec2 u = sampler_.get2d(dimension + kDimMediumDistance);
     const float t = distances.sample(u.x, u.y, distance_pdf);
@@ -643,8 +708,10 @@ class CameraPath {
       return;
     if (!(sample.visibility & OPAL_RAY_SCATTER)) return;
     if (brought_to_medium(sample.source)) return;
-    const Spectrum phase = here.phase_value(w_, dot(ray_.direction, sample.wi));
-    const Spectrum through = transmittance_over(here.extinction, t);
+    MediumHere scratch;
+    const MediumHere &here = media.at(t, scratch);
+    const Spectrum phase = sample.dirac ? Spectrum(0.0f) : onward_density(here, ray_.direction, sample.wi);
+    const Spectrum through = media.transmittance(t);
     Spectrum contribution =
         throughput_ * through * here.scattering * here.scattered(w_, -sample.wi, -ray_.direction, filter()) * sample.radiance;
     if (contribution.is_zero() || !contribution.is_finite()) return;

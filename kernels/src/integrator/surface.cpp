@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrator/surface.h"
 
+#include "media/stratified.h"
 namespace opal {
 
 void make_surface(const Scene &scene, const Ray &ray, const Hit &hit, uint32_t ray_kind, uint32_t depth,
@@ -102,8 +103,8 @@ Passage passage(const Scene &scene, const Ray &ray, MediumSet media, int max_lay
   Ray rest = ray;
   const auto attenuate = [&](float distance) {
     if (media.empty()) return;
-    if (!any_varies(scene, media)) {
-      const Spectrum through = transmittance_over(medium_here(scene, media, w).extinction, distance);
+    if (StratifiedMedia::holds(scene, media)) {
+      const Spectrum through = StratifiedMedia(scene, media, w, rest).transmittance(distance);
       result.medium *= through, result.path_pdf *= through;
       return;
     }

@@ -112,6 +112,7 @@ std::shared_ptr<LightTables> build_light_tables(const Scene &scene) {
     if (!lamp.valid) continue;
     if (lamp.type == OPAL_LIGHT_SUN) {
       t.far.push_back({SourceKind::Lamp, i});
+      t.suns.push_back({-lamp.axis, std::abs(lamp.intensity) * lamp.brightness});
       continue;
     }
     if (lamp.has_size()) t.sized.push_back(i);
@@ -122,6 +123,10 @@ std::shared_ptr<LightTables> build_light_tables(const Scene &scene) {
   if (scene.lights && !scene.world_dirty) t.world = scene.lights->world;
   else t.world.build(scene);
   if (t.world.present() && t.world.brightness() > 0) t.far.push_back({SourceKind::World, 0});
+  float suns = 0;
+  for (const LightTables::Sun &sun : t.suns) suns += sun.share;
+  for (LightTables::Sun &sun : t.suns) sun.share /= suns;
+  if (suns > 0) t.sun_share = suns / (suns + (t.world.present() ? kPi * t.world.brightness() : 0.0f));
 
   if (t.near.size() > kFewLights) {
     t.tree.build(t.near_bounds);

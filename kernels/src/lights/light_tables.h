@@ -26,6 +26,14 @@ struct LightTables {
   LightTree tree;
   std::vector<uint32_t> sized;  // lamps that rays can meet
 
+  // Suns by direction, with their shares of all suns' irradiance, and the suns' of theirs and the world's.
+  struct Sun {
+    Vec3 toward;
+    float share = 0;
+  };
+  std::vector<Sun> suns;
+  float sun_share = 0;
+
   EmissionTable to_casters, to_scene;
 };
 

@@ -119,7 +119,8 @@ size_t PhaseFunction::interval(float cosine, float &within) const {
   const size_t step = size_t(clamp(0.5f * (cosine + 1) * float(steps), 0.0f, float(steps - 1)));
   // One step to either side makes up for rounding.
   const uint32_t low = guide_[step > 0 ? step - 1 : 0], high = guide_[std::min(step + 2, steps)];
-  const auto it = std::upper_bound(cosines_.begin() + low, cosines_.begin() + std::min<size_t>(high, cosines_.size() - 1), cosine);
+  const auto it =
+      std::upper_bound(cosines_.begin() + low, cosines_.begin() + std::min<size_t>(high, cosines_.size() - 1), cosine);
   const size_t i = size_t(it - cosines_.begin());
   const float span = cosines_[i] - cosines_[i - 1];
   within = span > 0 ? saturate((cosine - cosines_[i - 1]) / span) : 0.0f;

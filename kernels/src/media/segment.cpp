@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "media/segment.h"
 
+#include "media/stratified.h"
 #include "scene/interior.h"
 
 #include <algorithm>
 
 namespace opal {
 
-MediumHere medium_here(const Scene &scene, const MediumSet &set, const Wavelengths &w) {
+MediumHere medium_here(const Scene &scene, const MediumSet &set, const Wavelengths &w, OneMedium *each) {
   static const PhaseFunction kIsotropic = PhaseFunction::isotropic();
   MediumHere here;
   for (int i = 0; i < set.count(); ++i) {
@@ -15,12 +16,14 @@ MediumHere medium_here(const Scene &scene, const MediumSet &set, const Wavelengt
     const auto table = [&](int s) { return s >= 0 ? lookup(scene.spectra[size_t(s)], w) : Spectrum(0.0f); };
     const Spectrum extinction = table(medium.extinction);
     here.extinction += extinction;
+    if (each) each[i] = {extinction, -1};
     here.any_layer = medium.layer;
     if (medium.layer != OPAL_MEDIUM_LAYER_BASE) here.replaced += extinction;
     here.emission += table(medium.emission);
     const Spectrum scattering = table(medium.scattering);
     if (scattering.is_zero()) continue;
     here.scattering += scattering;
+    if (each) each[i].part = here.n;
     here.part[here.n] = scattering;
     here.layer[here.n] = medium.layer;
     here.phase[here.n++] = medium.phase >= 0 ? &scene.phases[size_t(medium.phase)] : &kIsotropic;
@@ -83,8 +86,7 @@ Spectrum transmittance_over(const Spectrum &extinction, float t) {
   return s;
 }
 
-GatherDistance::GatherDistance(const Scene &scene, const Ray &ray, float t_max, float extinction)
-    : t_max_(t_max), extinction_(extinction), share_(1) {
+GatherDistance::GatherDistance(const Scene &scene, const Ray &ray, float t_max) : t_max_(t_max) {
   for (const opal::Lamp &lamp : scene.lamps) {
     if (lamp.desc.type == OPAL_LIGHT_SUN) continue;
     if (n_lamps_ == kMostLamps) break;
@@ -97,14 +99,17 @@ GatherDistance::GatherDistance(const Scene &scene, const Ray &ray, float t_max, 
     l.theta_a = std::atan2(-l.foot, l.height);
     l.theta_b = std::isfinite(t_max) ? std::atan2(t_max - l.foot, l.height) : 0.5f * kPi;
   }
-  if (n_lamps_ > 0) share_ = 0.5f;
-  if (!(extinction_ > 0) && !std::isfinite(t_max)) share_ = n_lamps_ > 0 ? 0.0f : 1.0f;
+}
+
+GatherDistance::GatherDistance(const Scene &scene, const Ray &ray, float t_max, const StratifiedMedia &media)
+    : GatherDistance(scene, ray, t_max) {
+  media_ = &media;
+  collided_ = -std::expm1(-media.mean_depth(t_max));
+  if (collided_ > 0) share_ = n_lamps_ > 0 ? 0.5f : 1.0f;
 }
 
 float GatherDistance::exponential_density(float t) const {
-  if (!(extinction_ > 0)) return std::isfinite(t_max_) ? 1 / t_max_ : 0.0f;
-  const float all = std::isfinite(t_max_) ? -std::expm1(-extinction_ * t_max_) : 1.0f;
-  return all > 0 ? extinction_ * std::exp(-extinction_ * t) / all : 0.0f;
+  return media_->mean_extinction(t) * std::exp(-media_->mean_depth(t)) / collided_;
 }
 
 float GatherDistance::equiangular_density(const Lamp &l, float t) const {
@@ -113,7 +118,7 @@ float GatherDistance::equiangular_density(const Lamp &l, float t) const {
 }
 
 float GatherDistance::density(float t) const {
-  float d = share_ * exponential_density(t);
+  float d = share_ > 0 ? share_ * exponential_density(t) : 0.0f;
   for (int i = 0; i < n_lamps_; ++i) d += (1 - share_) / float(n_lamps_) * equiangular_density(lamps_[i], t);
   return d;
 }
@@ -121,13 +126,9 @@ float GatherDistance::density(float t) const {
 float GatherDistance::sample(float pick, float u, float &density_out) const {
   float t;
   if (pick < share_) {
-    if (extinction_ > 0) {
-      const float all = std::isfinite(t_max_) ? -std::expm1(-extinction_ * t_max_) : 1.0f;
-      t = -std::log1p(-u * all) / extinction_;
-    } else {
-      t = u * t_max_;
-    }
+    t = media_->reach_mean(-std::log1p(-u * collided_));
   } else {
+    if (n_lamps_ == 0) return density_out = 0;
     const int i = std::min(int((pick - share_) / (1 - share_) * float(n_lamps_)), n_lamps_ - 1);
     const Lamp &l = lamps_[i];
     t = l.foot + l.height * std::tan(lerp(l.theta_a, l.theta_b, u));

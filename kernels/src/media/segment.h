@@ -29,25 +29,30 @@ struct MediumHere {
   bool scatters() const { return scattering.max() > 0; }
 };
 
-// Of homogeneous media: the same everywhere.
-MediumHere medium_here(const Scene &scene, const MediumSet &set, const Wavelengths &w);
+// What one of several media adds.
+struct OneMedium {
+  Spectrum extinction{0.0f};
+  int part = -1;  // of MediumHere's; -1: it does not scatter
+};
+
+// Of homogeneous media: the same everywhere. `each`, if given, takes what each adds, in the set's order.
+MediumHere medium_here(const Scene &scene, const MediumSet &set, const Wavelengths &w, OneMedium *each = nullptr);
 // Whether any of the media is not the same everywhere, so that closed forms do not hold.
 bool any_varies(const Scene &scene, const MediumSet &set);
 
 // exp(-extinction t); extinction 0 over an infinite distance is 1.
 Spectrum transmittance_over(const Spectrum &extinction, float t);
 
-// Where along a segment direct light is gathered: half by the hero's transmittance, truncated to the segment, half
+class StratifiedMedia;
+
+// Where along a segment direct light is gathered: half by the mean transmittance, truncated to the segment, half
 // equiangular about the finite lamps (Kulla & Fajardo 2012), as one mixture whose density is known at every t.
 class GatherDistance {
  public:
-  GatherDistance(const Scene &scene, const Ray &ray, float t_max, float extinction);
+  // `media` has to outlive it.
+  GatherDistance(const Scene &scene, const Ray &ray, float t_max, const StratifiedMedia &media);
   // Equiangular alone, for media whose transmittance is not known; the density is 0 everywhere where there is no finite lamp.
-  static GatherDistance equiangular(const Scene &scene, const Ray &ray, float t_max) {
-    GatherDistance d(scene, ray, t_max, 0);
-    d.share_ = 0;
-    return d;
-  }
+  static GatherDistance equiangular(const Scene &scene, const Ray &ray, float t_max) { return {scene, ray, t_max}; }
   bool empty() const { return share_ == 0 && n_lamps_ == 0; }
   float sample(float pick, float u, float &density) const;
   float density(float t) const;
@@ -56,13 +61,16 @@ class GatherDistance {
   struct Lamp {
     float foot, height, theta_a, theta_b;
   };
+  GatherDistance(const Scene &scene, const Ray &ray, float t_max);
   float exponential_density(float t) const;
   float equiangular_density(const Lamp &lamp, float t) const;
 
   static constexpr int kMostLamps = 8;
   Lamp lamps_[kMostLamps];
   int n_lamps_ = 0;
-  float t_max_, extinction_, share_;  // share_: of the exponential part
+  const StratifiedMedia *media_ = nullptr;
+  float t_max_, share_ = 0;  // share_: of the exponential part
+  float collided_ = 0;       // the mean transmittance's complement over the segment
 };
 
 // Follows the media through boundaries met by a ray.

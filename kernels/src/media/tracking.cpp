@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "media/tracking.h"
 
+#include "media/stratified.h"
 #include "scene/interior.h"
 
 namespace opal {
@@ -30,6 +31,8 @@ RayMedia::RayMedia(const Scene &scene, const MediumSet &set, const Wavelengths &
     if (set[i].instance < scene.instances.size()) {
       const Transform &to_object = scene.instances[set[i].instance].to_object;
       layer.origin = to_object.point(ray.origin), layer.direction = to_object.vector(ray.direction);
+    } else {
+      layer.floor = scene.world_floor;
     }
     layer.sigma_t = table(medium.extinction), layer.sigma_s = table(medium.scattering), layer.glow = table(medium.emission);
     if (!layer.sigma_t.is_zero()) add_part(layer, medium.density, layer.density, layer.sigma_t, false, 0);
@@ -63,7 +66,7 @@ MediumHere RayMedia::at(float t) const {
     const float density = medium.density.at(p, layer.density);
     const Spectrum before = here.extinction;
     here.any_layer = medium.layer;
-    Spectrum scattering = layer.sigma_s * density;
+    Spectrum scattering = p.z < layer.floor ? Spectrum(0.0f) : layer.sigma_s * density;
     here.extinction += layer.sigma_t * density;
     if (!layer.glow.is_zero()) here.emission += layer.glow * medium.emission_density.at(p, layer.emission);
     const auto colors = [&](const Grid *grid) { return uplift(grid->color(grid->to_lattice().point(p)), w_); };
@@ -153,7 +156,7 @@ void pass_through(RayMedia &media, float t_end, RandomStream &random, Walk &walk
 
 Spectrum estimate_transmittance(const Scene &scene, const MediumSet &set, const Wavelengths &w, const Ray &ray, float t_end,
                                 RandomStream &random) {
-  if (!any_varies(scene, set)) return transmittance_over(medium_here(scene, set, w).extinction, t_end);
+  if (StratifiedMedia::holds(scene, set)) return StratifiedMedia(scene, set, w, ray).transmittance(t_end);
   RayMedia media(scene, set, w, ray);
   Walk walk;
   float depth = 0;

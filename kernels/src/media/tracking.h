@@ -38,7 +38,8 @@ class RayMedia {
     const PhaseFunction *phase = nullptr;
     const Grid *density = nullptr, *emission = nullptr;
     const Grid *scattering_colors = nullptr, *absorption_colors = nullptr, *emission_colors = nullptr;
-    Vec3 origin, direction;  // of the ray, in the object's space
+    Vec3 origin, direction;    // of the ray, in the object's space
+    float floor = -kInfinity;  // height under which nothing is scattered
     Spectrum sigma_t, sigma_s, glow;
   };
   struct Part {  // one field of one medium
@@ -77,7 +78,7 @@ bool fly(RayMedia &media, float t_end, RandomStream &random, Walk &walk, float &
 // delta tracking would have had for coming through so.
 void pass_through(RayMedia &media, float t_end, RandomStream &random, Walk &walk, float &depth);
 
-// The transmittance at each wavelength over [0, t_end) of a ray, estimated once; homogeneous media exactly.
+// The transmittance at each wavelength over [0, t_end) of a ray, estimated once; media in closed form exactly.
 Spectrum estimate_transmittance(const Scene &scene, const MediumSet &set, const Wavelengths &w, const Ray &ray, float t_end,
                                 RandomStream &random);
 

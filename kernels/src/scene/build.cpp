@@ -270,6 +270,11 @@ void Scene::commit() {
   if (geometry_dirty || instances_dirty || lights_dirty) {
     any_transparent_shadow = false;
     any_medium = world_medium >= 0;
+    world_floor = -kInfinity;
+    if (world_medium >= 0 && media[size_t(world_medium)].density.kind == DensityKind::Height) {
+      const float base = media[size_t(world_medium)].density.base_height;
+      world_floor = bounds.empty() ? base : std::min(base, bounds.low.z);
+    }
     any_glowing_medium = false;
     for (const Medium &m : media) any_glowing_medium |= m.emission >= 0;
     for (const Material &m : materials) {

@@ -126,7 +126,8 @@ struct Scene {
   bool has_camera = false;
 
   // Built by commit().
-  Bounds bounds;                           // of everything finite
+  Bounds bounds;                   // of everything finite
+  float world_floor = -kInfinity;  // the world's medium, if it thins with height, scatters nothing below: there is ground
   std::vector<EmissiveTriangle> emissive;  // sorted by (instance, triangle)
   std::vector<EmissionTarget> casters;     // spheres round what can make caustics
   std::shared_ptr<LightTables> lights;
