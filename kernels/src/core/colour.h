@@ -11,14 +11,12 @@
 
 namespace opal {
 
-// Where wavelengths of smooth spectra are sampled, up to a factor.
-double smooth_density(double nm);
-
 struct ColourTables {
   SpectralTable
       rgb_response[3];  // per nm: linear Rec.709 of a unit of spectral radiance (matching functions x matrix / normalisation)
   SpectralTable basis[3];
   SpectralTable d65;                    // scaled to luminance 1; a spectrum of 1 has luminance 1 too
+  SpectralTable smooth;                 // where wavelengths of smooth spectra are sampled, up to a factor
   float first_nm = 360, last_nm = 830;  // the sampled range
   // The density of sampled wavelengths: per nm at the table's nodes, linear between them; cdf at the nodes.
   SpectralTable cdf, pdf;

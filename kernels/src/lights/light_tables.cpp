@@ -156,8 +156,7 @@ void weigh_wavelengths(const Scene &scene, ColourTables &colour) {
     if (std::find(seen.begin(), seen.end(), spectrum) != seen.end()) continue;
     seen.push_back(spectrum);
     SpectralTable share = scene.lights->lamp_tables[size_t(lamp.table)];
-    for (size_t k = 0; k < share.size(); ++k)
-      share[k] = std::max(share[k], 0.0f) * float(smooth_density(kTableFirst + double(k)));
+    for (size_t k = 0; k < share.size(); ++k) share[k] = std::max(share[k], 0.0f) * colour.smooth[k];
     shares.push_back(share);
   }
   colour.weigh(shares, smooth ? 1 / float(shares.size() + 1) : kLeastSmoothShare);
