@@ -187,6 +187,7 @@ class _FinalRender:
             region=(x0, y0, x1, y1),
             passes=(),
             spectral_bins=0,
+            adaptive=False,
         )
         if not (x0 < x1 <= coarse.width and y0 < y1 <= coarse.height):
             return True

@@ -57,6 +57,7 @@ class OPAL_RENDER_PT_sampling(_RenderPanel):
         column = layout.column(align=True)
         column.prop(opal, "passes")
         column.prop(opal, "samples_per_pass")
+        layout.prop(opal, "use_adaptive_sampling")
         column = layout.column(align=True)
         column.prop(opal, "noise_threshold")
         column.prop(opal, "time_limit")

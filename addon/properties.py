@@ -39,6 +39,12 @@ class OpalSceneProperties(bpy.types.PropertyGroup):
         soft_max=64,
         max=4096,
     )
+    use_adaptive_sampling: BoolProperty(
+        name="Adaptive Sampling",
+        description="Look before the first pass where the noise will be: more camera paths go there, and photons and paths are weighed "
+        "against each other. Samples and photons per pass then say how much work a pass is, not how it is shared out",
+        default=True,
+    )
     photons_per_pass: IntProperty(
         name="Photons per Pass",
         description="How many photons each pass sends out from lamps, emissive meshes and the world; 0 leaves all light to camera paths",

@@ -106,5 +106,6 @@ def render_settings(scene: Any, frame: Frame, passes: Sequence[Pass] = (), previ
         motion_blur=scene.render.use_motion_blur and not preview,
         spectral_bins=opal.spectral_bins if spectral else 0,
         threads=threads_of(scene.render),
+        adaptive=opal.use_adaptive_sampling and not preview,
         passes=(*passes, Pass.SPECTRAL) if spectral else tuple(passes),
     )

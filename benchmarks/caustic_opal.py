@@ -34,8 +34,9 @@ def snapshots(description: CausticScene, method: str, times: list[float], seed: 
         scene.set_camera(transform=looking(description.eye, description.target), window=(-half, half, -half, half))
         start, found = time.perf_counter(), []
         scene.commit()
-        settings = {"samples_per_pass": 8, "photons_per_pass": 400_000, "filter": 0, "filter_width": 1.0, "max_depth": 64, "seed": seed}
-        with Render(scene, width=SIZE, height=SIZE, **settings) as render:
+        film = {"width": SIZE, "height": SIZE, "filter": 0, "filter_width": 1.0}
+        defaults = {"samples_per_pass": 4, "photons_per_pass": 200_000, "adaptive": True}  # the add-on's
+        with Render(scene, **film, **defaults, max_depth=64, seed=seed) as render:
             for number in range(1_000_000):
                 render.run_pass(number)
                 if (now := time.perf_counter() - start) >= times[len(found)]:

@@ -73,6 +73,8 @@ class OPAL_OT_compare_cycles(bpy.types.Operator):
         try:
             edited = _bring_twins_up_to_date()
             with Changed() as changed:
+                if self.equal == "SAMPLES":
+                    changed.set(context.scene.opal, use_adaptive_sampling=False)
                 if self.mode == "VOLUMES":
                     _hide_all_but_volumes(changed, context.scene)
                 ours = render_scene.opal(context)

@@ -435,6 +435,9 @@ class RenderSettings:
         Steps along a ray of the estimate ``POINTS``.
     march_tolerance : float
         Relative difference between neighbouring steps above which one is halved; 0 halves none.
+    adaptive : bool
+        A pilot before the first pass shares out the camera paths over the picture by their noise, with ``samples_per_pass`` as their
+        mean, and weighs photons against paths at the same cost. The same seed plans the same, so that passes add up.
     """
 
     width: int = 256
@@ -466,3 +469,4 @@ class RenderSettings:
     volume_radius: float = 0.0
     march_steps: int = 16
     march_tolerance: float = 0.5
+    adaptive: bool = False

@@ -13,6 +13,7 @@ pytestmark = pytest.mark.usefixtures("opal")
 SCENE_NAMES = [
     "passes",
     "samples_per_pass",
+    "use_adaptive_sampling",
     "photons_per_pass",
     "photons_carry",
     "gather",

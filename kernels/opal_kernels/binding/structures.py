@@ -258,6 +258,7 @@ class RenderSettingsStruct(ctypes.Structure):
         ("volume_radius", c_float),
         ("march_steps", c_int32),
         ("march_tolerance", c_float),
+        ("adaptive", c_int32),
     ]
 
 
@@ -281,6 +282,7 @@ class RenderStatisticsStruct(ctypes.Structure):
         ("energy_stored", c_double),
         ("energy_absorbed", c_double),
         ("energy_escaped", c_double),
+        ("pilot_seconds", c_double),
     ]
 
 

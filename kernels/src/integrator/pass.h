@@ -28,7 +28,8 @@ enum Stream : uint32_t {
   kStreamPhotons = 0xf0000000u,
   kStreamPass = 0xf1000000u,
   kStreamVolumePhotons = 0xf2000000u,
-  kStreamPilot = 0xf3000000u
+  kStreamPilot = 0xf3000000u,
+  kStreamPlan = 0xf4000000u  // and the three after it
 };
 
 // Whether the film asks for any layer; paths keep account of them only then.

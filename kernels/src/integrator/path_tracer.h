@@ -29,6 +29,7 @@ struct RayCounts {
   int64_t camera = 0, path = 0, shadow = 0;
 };
 
+// sample: which of the pixel's in the whole render.
 PathLight trace_camera_path(const PassContext &pass, uint32_t x, uint32_t y, uint32_t sample, RayCounts &counts);
 
 }  // namespace opal

@@ -2,23 +2,31 @@
 #include "integrator/render.h"
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "film/spectral_film.h"
 #include "integrator/path_tracer.h"
 #include "integrator/path_class.h"
 #include "lights/light_tables.h"
 #include "photons/kernel_radius.h"
 
-#include <chrono>
-
 namespace opal {
 namespace {
 
 constexpr int kTile = 16;
 constexpr uint32_t kPhotonChunk = 4096;
-constexpr uint32_t kPilotPhotons = 1u << 16;
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+// Everything of all chunks, in their order; it leaves them.
+template <class T>
+std::vector<T> gathered(std::vector<PhotonChunk> &chunks, std::vector<T> PhotonChunk::*part) {
+  size_t total = 0;
+  for (const PhotonChunk &chunk : chunks) total += (chunk.*part).size();
+  std::vector<T> all;
+  all.reserve(total);
+  for (PhotonChunk &chunk : chunks) {
+    all.insert(all.end(), (chunk.*part).begin(), (chunk.*part).end());
+    chunk.*part = {};
+  }
+  return all;
 }
 
 void put(float *out, const Vec3 &v) { out[0] = v.x, out[1] = v.y, out[2] = v.z; }
@@ -40,31 +48,6 @@ bool Render::wants_photons() const {
   return settings_.photons_carry != OPAL_CARRY_CAUSTICS || !scene_.casters.empty();
 }
 
-// Before the first pass: where photons are worth sending. The same for every pass, and for every machine that has a share of
-// them.
-bool Render::learn_emission() {
-  const auto start = std::chrono::steady_clock::now();
-  const uint32_t first_round = std::min(kPilotPhotons, uint32_t(settings_.photons_per_pass)), n = 3 * first_round;
-  PassContext pass(scene_, settings_, filter_, 0);
-  const PhotonTask task{n, kStreamPilot, true, scene_.any_medium};
-  std::vector<EmissionTrial> trials;
-  std::unique_ptr<EmissionGuide> guide;
-  for (const uint32_t end : {first_round, n}) {
-    const uint32_t begin = uint32_t(trials.size());
-    trials.resize(end);
-    const bool complete = parallel_for(int64_t(end - begin + 255) / 256, threads_, cancelled_, [&](int64_t i) {
-      const uint32_t first = begin + uint32_t(i) * 256;
-      try_photons(pass, task, first, std::min(end, first + 256), trials.data());
-    });
-    if (!complete || cancelled_) return false;
-    guide = std::make_unique<EmissionGuide>(trials, scene_.lights->to_casters.cdf);
-    pass.guide = guide.get();
-  }
-  guide_ = std::move(guide);
-  statistics_.photon_seconds += seconds_since(start);
-  return true;
-}
-
 bool Render::run_task(const PassContext &pass, const PhotonTask &task, float from, float to, std::vector<PhotonChunk> &chunks) {
   const size_t before = chunks.size();
   const int64_t n_chunks = (int64_t(task.count) + kPhotonChunk - 1) / kPhotonChunk;
@@ -82,21 +65,16 @@ bool Render::run_task(const PassContext &pass, const PhotonTask &task, float fro
 }
 
 bool Render::trace_photons_of(PassContext &pass, PassBuffer &buffer, SplatSums &splats) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch start;
   const uint32_t n = uint32_t(settings_.photons_per_pass);
   const uint32_t apart = scene_.any_medium ? uint32_t(settings_.volume_photons) : 0;
   std::vector<PhotonChunk> chunks;
   if (!run_task(pass, {n, kStreamPhotons, true, apart == 0}, 0, apart ? 0.15f : 0.3f, chunks)) return false;
   if (apart && !run_task(pass, {apart, kStreamVolumePhotons, false, true}, 0.15f, 0.3f, chunks)) return false;
 
-  size_t total = 0;
-  for (const PhotonChunk &chunk : chunks) total += chunk.photons.size();
-  std::vector<Photon> photons;
-  photons.reserve(total);
   splats.direct.resize(size_t(width()) * size_t(height()));
   splats.indirect = splats.caustics = splats.direct;
   for (PhotonChunk &chunk : chunks) {  // in order: the sums do not depend on who traced what
-    photons.insert(photons.end(), chunk.photons.begin(), chunk.photons.end());
     for (const Splat &splat : chunk.splats)
       (splat.pass == OPAL_PASS_CAUSTICS ? splats.caustics
        : splat.pass == OPAL_PASS_DIRECT ? splats.direct
@@ -109,62 +87,55 @@ bool Render::trace_photons_of(PassContext &pass, PassBuffer &buffer, SplatSums &
     statistics_.energy_stored += chunk.energy.stored;
     statistics_.energy_absorbed += chunk.energy.absorbed;
     statistics_.energy_escaped += chunk.energy.escaped;
-    chunk.photons = {}, chunk.splats = {}, chunk.spectral = {};
+    chunk.splats = {}, chunk.spectral = {};
   }
-  const auto traced = std::chrono::steady_clock::now();
+  const Stopwatch traced;
   statistics_.photons_emitted += n;
-  statistics_.photons_stored += int64_t(total);
   statistics_.volume_photons_emitted += scene_.any_medium ? (apart ? apart : n) : 0;
-  pass.photons.build(std::move(photons), surface_radius(scene_, settings_, pass.pass), threads_);
-  build_volume(pass, chunks);
+  build_maps(pass, chunks);
+  statistics_.photons_stored += int64_t(pass.photons.size());
   statistics_.photon_bytes = int64_t(pass.photons.size() * sizeof(Photon)) + pass.volume.memory_bytes();
-  statistics_.search_seconds += seconds_since(traced);
-  statistics_.photon_seconds += seconds_since(start);
+  statistics_.search_seconds += traced.seconds();
+  statistics_.photon_seconds += start.seconds();
   return true;
 }
 
-// Points or beams of the pass, whichever its estimate looks up.
-void Render::build_volume(PassContext &pass, std::vector<PhotonChunk> &chunks) {
-  const auto gathered = [&]<class T>(std::vector<T> PhotonChunk::*part) {
-    size_t total = 0;
-    for (const PhotonChunk &chunk : chunks) total += (chunk.*part).size();
-    std::vector<T> all;
-    all.reserve(total);
-    for (PhotonChunk &chunk : chunks) {
-      all.insert(all.end(), (chunk.*part).begin(), (chunk.*part).end());
-      chunk.*part = {};
-    }
-    statistics_.volume_photons_stored += int64_t(total);
+// The photons of a pass, ready to be looked up: on surfaces, and in media points or beams, whichever the estimate takes.
+void Render::build_maps(PassContext &pass, std::vector<PhotonChunk> &chunks) {
+  const opal_render_settings &settings = pass.settings;
+  pass.photons.build(gathered(chunks, &PhotonChunk::photons), surface_radius(scene_, settings, pass.pass), threads_);
+  const auto of_media = [&](auto part) {
+    auto all = gathered(chunks, part);
+    statistics_.volume_photons_stored += int64_t(all.size());
     return all;
   };
-  const float radius = settings_.volume_radius > 0 ? settings_.volume_radius : settings_.radius;
-  switch (settings_.volume_estimate) {
+  const float radius = settings.volume_radius > 0 ? settings.volume_radius : settings.radius;
+  switch (settings.volume_estimate) {
     case OPAL_VOLUME_BEAMS: {
-      const float first = radius > 0 ? radius : pixel_footprint(scene_, settings_);
-      const float shrunk = radius_factor(1, settings_.radius_shrink, pass.pass);
-      pass.volume.build(gathered(&PhotonChunk::beams), first * shrunk, threads_);
+      const float first = radius > 0 ? radius : pixel_footprint(scene_, settings);
+      const float shrunk = radius_factor(1, settings.radius_shrink, pass.pass);
+      pass.volume.build(of_media(&PhotonChunk::beams), first * shrunk, threads_);
       break;
     }
     case OPAL_VOLUME_BEAM_RADIANCE: {
       // The ray passes many discs where a sphere holds the photons asked for: an eighth of them sets the radius.
-      const float shrunk = radius_factor(2, settings_.radius_shrink, pass.pass);
-      pass.volume.build(gathered(&PhotonChunk::volume), radius * shrunk, shrunk, std::max(1, settings_.gather / 8), threads_);
+      const float shrunk = radius_factor(2, settings.radius_shrink, pass.pass);
+      pass.volume.build(of_media(&PhotonChunk::volume), radius * shrunk, shrunk, std::max(1, settings.gather / 8), threads_);
       break;
     }
     default: {
-      const float shrunk = radius_factor(3, settings_.radius_shrink, pass.pass);
-      pass.volume.build(gathered(&PhotonChunk::volume), radius * shrunk, shrunk, settings_.gather, threads_);
+      const float shrunk = radius_factor(3, settings.radius_shrink, pass.pass);
+      pass.volume.build(of_media(&PhotonChunk::volume), radius * shrunk, shrunk, settings.gather, threads_);
     }
   }
 }
 
 bool Render::trace_camera_of(const PassContext &pass, PassBuffer &buffer, const SplatSums &splats) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch start;
   const int w = width(), h = height();
   const int tiles_x = (w + kTile - 1) / kTile, tiles_y = (h + kTile - 1) / kTile;
-  const int samples = settings_.samples_per_pass;
   const float filter = scene_.camera.polarizer ? 0.5f : 1.0f;  // a polarising filter takes half of unpolarised light
-  const float scale = 1 / float(samples), exposure = settings_.exposure * filter;
+  const float exposure = settings_.exposure * filter;
   const float from = progress_;
   std::atomic<int64_t> done{0}, camera{0}, path{0}, shadow{0};
 
@@ -174,9 +145,11 @@ bool Render::trace_camera_of(const PassContext &pass, PassBuffer &buffer, const 
     LayerLight layers;
     float alpha = 0, depth = 0;
     int hits = 0;
+    const int samples = plan_.empty() ? settings_.samples_per_pass : plan_.samples(x, y, settings_.seed);
+    const float scale = 1 / float(samples);
     for (int s = 0; s < samples; ++s) {
-      const PathLight light =
-          trace_camera_path(pass, uint32_t(x + settings_.region[0]), uint32_t(y + settings_.region[1]), uint32_t(s), counts);
+      const PathLight light = trace_camera_path(pass, uint32_t(x + settings_.region[0]), uint32_t(y + settings_.region[1]),
+                                                uint32_t(pass.pass) * uint32_t(samples) + uint32_t(s), counts);
       emission += light.emission, direct += light.direct, indirect += light.indirect, caustics += light.caustics;
       medium += light.medium;
       layers += light.layers;
@@ -235,7 +208,7 @@ bool Render::trace_camera_of(const PassContext &pass, PassBuffer &buffer, const 
   statistics_.camera_rays += camera;
   statistics_.path_rays += path;
   statistics_.shadow_rays += shadow;
-  statistics_.camera_seconds += seconds_since(start);
+  statistics_.camera_seconds += start.seconds();
   return true;
 }
 
@@ -244,9 +217,10 @@ bool Render::render_pass(int number) {
   PassBuffer buffer;
   buffer.allocate(width(), height(), settings_.passes, settings_.spectral_bins);
   SplatSums splats;
+  if (wants_photons() && !guide_ && settings_.photons_carry == OPAL_CARRY_CAUSTICS && !learn_emission()) return false;
+  if (settings_.adaptive && plan_.empty() && !plan_work()) return false;
   PassContext pass(scene_, settings_, filter_, number);
   if (wants_photons()) {
-    if (!guide_ && settings_.photons_carry == OPAL_CARRY_CAUSTICS && !learn_emission()) return false;
     pass.guide = guide_.get();
     if (!trace_photons_of(pass, buffer, splats)) return false;
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "integrator/pass.h"
+#include "integrator/work_plan.h"
 #include "photons/photon_tracer.h"
 
 #include <atomic>
@@ -31,10 +32,12 @@ class Render {
   opal_render_statistics statistics() const;
 
  private:
+  // What is learnt before the first pass (render_pilot.cpp); false when cancelled.
   bool learn_emission();
+  bool plan_work();
   bool trace_photons_of(PassContext &pass, PassBuffer &buffer, SplatSums &splats);
   bool run_task(const PassContext &pass, const PhotonTask &task, float from, float to, std::vector<PhotonChunk> &chunks);
-  void build_volume(PassContext &pass, std::vector<PhotonChunk> &chunks);
+  void build_maps(PassContext &pass, std::vector<PhotonChunk> &chunks);
   bool trace_camera_of(const PassContext &pass, PassBuffer &buffer, const SplatSums &splats);
   bool wants_photons() const;
   int width() const { return settings_.region[2] - settings_.region[0]; }
@@ -48,6 +51,7 @@ class Render {
   Film film_;
   opal_render_statistics statistics_{};
   std::unique_ptr<EmissionGuide> guide_;
+  WorkPlan plan_;
   std::atomic<bool> cancelled_{false};
   std::atomic<float> progress_{0};
 };

@@ -3,10 +3,10 @@
 //
 // Meshes become Embree scenes of their own, instances refer to them: a hundred thousand copies cost a transform each,
 // an edited colour rebuilds nothing and a moved object the top level alone.
+#include "core/stopwatch.h"
 #include "scene/scene.h"
 
 #include <algorithm>
-#include <chrono>
 #include <numeric>
 
 namespace opal {
@@ -253,7 +253,7 @@ int Scene::find_emissive(uint32_t instance, uint32_t triangle) const {
 }
 
 void Scene::commit() {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch start;
   if (materials.empty()) materials.emplace_back();
   if (geometry_dirty)
     for (const auto &mesh : meshes)
@@ -289,7 +289,7 @@ void Scene::commit() {
     weigh_wavelengths(*this, colour);
   }
   geometry_dirty = instances_dirty = lights_dirty = world_dirty = false;
-  build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  build_seconds = start.seconds();
 }
 
 void Scene::set_wavelengths(float first, float last) {
