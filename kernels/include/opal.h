@@ -390,7 +390,7 @@ typedef struct opal_render_settings {
   float volume_radius;   /* of the first pass's kernel in media, metres; 0: radius, and if that is 0 chosen from the photons */
   int32_t march_steps;   /* POINTS: steps along a ray */
   float march_tolerance; /* POINTS: relative difference of neighbours above which a step is halved; 0: never */
-  int32_t adaptive;      /* a pilot shares out samples_per_pass, a mean then, over the picture, and weighs photons against them */
+  int32_t adaptive; /* a pilot shares out samples_per_pass, a mean then, over the picture, and weighs photons against them */
 } opal_render_settings;
 
 OPAL_EXPORT opal_render *opal_render_create(opal_scene *scene, const opal_render_settings *settings);

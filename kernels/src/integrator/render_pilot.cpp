@@ -112,11 +112,11 @@ bool Render::plan_work() {
       const int y = std::min(height() - 1, y0 + (k >> 1) * kQuarter + int((h >> 8) % kQuarter));
       PilotPixel found[2];
       for (size_t half = 0; half < passes.size(); ++half)
-        found[half] =
-            look_through(passes[half], uint32_t(x + settings_.region[0]), uint32_t(y + settings_.region[1]), counts);
+        found[half] = look_through(passes[half], uint32_t(x + settings_.region[0]), uint32_t(y + settings_.region[1]), counts);
       block.brightness += found[0].mean / float(kPilotPixels);
       block.path_variance += found[0].variance / float(kPilotPixels);
-      if (photons) block.photon_variance += 0.5f * mean_square(found[0].mean - found[1].mean) * float(n_photons) / float(kPilotPixels);
+      if (photons)
+        block.photon_variance += 0.5f * mean_square(found[0].mean - found[1].mean) * float(n_photons) / float(kPilotPixels);
     }
     block.rays = float(counts.path + counts.shadow) / float(kPilotPixels * kPilotPaths * passes.size());
   });

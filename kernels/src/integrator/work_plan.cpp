@@ -86,8 +86,9 @@ WorkPlan::WorkPlan(const std::vector<PilotBlock> &blocks, int blocks_x, int samp
     const float pixels = float(n) * kPlanBlock * kPlanBlock, photon_cost = std::max(rays_of_photon, 0.1f) / pixels;
     const float budget = float(samples) * cost + float(photons) * photon_cost;
     const float fewest = kLeastPhotons * float(photons), most = kMostPhotons * float(photons);
-    float many = of_paths > 0 ? budget / (photon_cost + cost * std::sqrt(of_paths * photon_cost / std::max(of_photons * cost, 1e-30f)))
-                              : most;
+    float many = of_paths > 0
+                     ? budget / (photon_cost + cost * std::sqrt(of_paths * photon_cost / std::max(of_photons * cost, 1e-30f)))
+                     : most;
     many = clamp(std::min(many, (budget - cost) / photon_cost), fewest, most);
     paths = clamp((budget - many * photon_cost) / cost, 1.0f, kMostPaths * float(samples));
     photons_ = std::max(1, int(many));

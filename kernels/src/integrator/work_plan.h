@@ -3,9 +3,9 @@
 //
 // A pilot measures, block by block, the variance of one camera path and of one photon relative to the squared brightness there,
 // and what each costs. Paths are then shared out by Neyman's rule (Neyman 1934, "On the Two Different Aspects of the
-// Representative Method", section V: in proportion to standard deviation over the root of the cost), and photons against paths by the
-// same rule, at the cost that the settings' own numbers would have had. The plan depends on scene, settings and seed alone and is
-// the same for every pass, so passes stay independent and unbiased.
+// Representative Method", section V: in proportion to standard deviation over the root of the cost), and photons against paths
+// by the same rule, at the cost that the settings' own numbers would have had. The plan depends on scene, settings and seed
+// alone and is the same for every pass, so passes stay independent and unbiased.
 #pragma once
 
 #include "core/vec.h"
@@ -21,10 +21,10 @@ inline constexpr uint32_t kPilotPaths = 8;  // camera paths through each
 
 // What the pilot found in a block, as means over its pixels.
 struct PilotBlock {
-  Vec3 brightness;              // linear Rec.709
-  float path_variance = 0;      // of one camera path, mean over the channels
-  float photon_variance = 0;    // times the number of photons
-  float rays = 0;               // of one camera path
+  Vec3 brightness;            // linear Rec.709
+  float path_variance = 0;    // of one camera path, mean over the channels
+  float photon_variance = 0;  // times the number of photons
+  float rays = 0;             // of one camera path
 };
 
 class WorkPlan {
