@@ -85,6 +85,18 @@ def test_photons_that_bring_nothing_are_not_sent():
     assert planned["camera_rays"] > even["camera_rays"]
 
 
+def test_a_region_is_the_same_as_in_the_whole_frame():
+    """The sums of a part rendered alone, to the bit."""
+    with Scene(threads=2) as scene:
+        ball_on_a_floor(scene)
+        settings = {"samples_per_pass": 4, "photons_per_pass": 4000, "adaptive": True}
+        films = []
+        for region in (None, (10, 12, 30, 28)):
+            with Render(scene, width=SIZE, height=SIZE, region=region, **settings) as render:
+                films.append(render.run(2).sums().sums[Pass.COMBINED])
+    assert np.array_equal(films[0][12:28, 10:30], films[1])
+
+
 def test_one_sample_and_one_pixel_have_a_plan_too():
     """Extremes: one camera path a pixel, one photon a pass, a region of one pixel."""
     with Scene(threads=2) as scene:

@@ -145,7 +145,8 @@ bool Render::trace_camera_of(const PassContext &pass, PassBuffer &buffer, const 
     LayerLight layers;
     float alpha = 0, depth = 0;
     int hits = 0;
-    const int samples = plan_.empty() ? settings_.samples_per_pass : plan_.samples(x, y, settings_.seed);
+    const int samples = plan_.empty() ? settings_.samples_per_pass
+                                      : plan_.samples(x + settings_.region[0], y + settings_.region[1], settings_.seed);
     const float scale = 1 / float(samples);
     for (int s = 0; s < samples; ++s) {
       const PathLight light = trace_camera_path(pass, uint32_t(x + settings_.region[0]), uint32_t(y + settings_.region[1]),

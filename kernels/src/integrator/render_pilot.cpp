@@ -67,13 +67,16 @@ bool Render::learn_emission() {
 }
 
 // Two photon maps of the same size lie beside the same camera paths: what differs between the two is the photons' noise alone.
+// The whole frame is looked at whatever its region: a part rendered again is the same to the bit.
 bool Render::plan_work() {
   const opal_render_statistics before = statistics_;
   const Stopwatch start;
-  const int blocks_x = (width() + kPlanBlock - 1) / kPlanBlock, blocks_y = (height() + kPlanBlock - 1) / kPlanBlock;
+  opal_render_settings settings = settings_;
+  const int frame_width = settings.width, frame_height = settings.height;
+  settings.region[0] = settings.region[1] = 0, settings.region[2] = frame_width, settings.region[3] = frame_height;
+  const int blocks_x = (frame_width + kPlanBlock - 1) / kPlanBlock, blocks_y = (frame_height + kPlanBlock - 1) / kPlanBlock;
   std::vector<PilotBlock> blocks(size_t(blocks_x) * size_t(blocks_y));
   const bool photons = wants_photons();
-  opal_render_settings settings = settings_;
   if (photons) scale_photons(settings, std::min(1.0, 0.5 * kPilotPhotons / settings_.photons_per_pass));
   const uint32_t n_photons = uint32_t(settings.photons_per_pass);
   const uint32_t apart = scene_.any_medium ? uint32_t(settings.volume_photons) : 0;
@@ -91,7 +94,7 @@ bool Render::plan_work() {
     for (const PhotonChunk &chunk : chunks) {
       photon_rays += chunk.rays;
       for (const Splat &splat : chunk.splats) {
-        const int x = int(splat.pixel) % width(), y = int(splat.pixel) / width();
+        const int x = int(splat.pixel) % frame_width, y = int(splat.pixel) / frame_width;
         PilotBlock &block = blocks[size_t(y / kPlanBlock * blocks_x + x / kPlanBlock)];
         constexpr float kShare = 0.5f / (kPlanBlock * kPlanBlock);  // of one of two halves, in one pixel
         block.brightness += splat.rgb * kShare;
@@ -108,8 +111,8 @@ bool Render::plan_work() {
     for (int k = 0; k < kPilotPixels; ++k) {
       const uint32_t h = hash32(hash32(settings_.seed, uint32_t(i)), uint32_t(k));
       constexpr int kQuarter = kPlanBlock / 2;
-      const int x = std::min(width() - 1, x0 + (k & 1) * kQuarter + int(h % kQuarter));
-      const int y = std::min(height() - 1, y0 + (k >> 1) * kQuarter + int((h >> 8) % kQuarter));
+      const int x = std::min(frame_width - 1, x0 + (k & 1) * kQuarter + int(h % kQuarter));
+      const int y = std::min(frame_height - 1, y0 + (k >> 1) * kQuarter + int((h >> 8) % kQuarter));
       PilotPixel found[2];
       for (size_t half = 0; half < passes.size(); ++half)
         found[half] = look_through(passes[half], uint32_t(x + settings_.region[0]), uint32_t(y + settings_.region[1]), counts);

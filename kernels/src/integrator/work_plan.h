@@ -35,7 +35,7 @@ class WorkPlan {
 
   bool empty() const { return density_.empty(); }
   int photons() const { return photons_; }
-  // Camera paths a pass for the pixel (x, y) of the region: at least one, between blocks interpolated.
+  // Camera paths a pass for the pixel (x, y) of the frame: at least one, between blocks interpolated.
   int samples(int x, int y, uint32_t seed) const;
 
  private:
