@@ -176,7 +176,9 @@ class Scene:
         """Fills the world with a medium; -1 takes it away."""
         binding.scene_set_world_medium(self.handle, medium)
 
-    def add_gem(self, index: Any, absorption: Any = None, roughness: float = 0.0, fresnel: int = 0, priority: int = 0) -> int:
+    def add_gem(
+        self, index: Any, absorption: Any = None, roughness: float = 0.0, fresnel: int = 0, priority: int = 0, medium: int = -1
+    ) -> int:
         """Adds a dielectric from spectra.
 
         Parameters
@@ -185,6 +187,10 @@ class Scene:
             Index of refraction: one number or 471 values.
         absorption : float or array_like, optional
             σa in 1/m: one number or 471 values.
+        roughness, fresnel, priority
+            As in `Gem`.
+        medium : int, optional
+            The medium that clouds it.
 
         Returns
         -------
@@ -195,7 +201,7 @@ class Scene:
         gem = Gem(self.add_spectrum(spectrum), -1, roughness, fresnel, priority)
         if absorption is not None:
             gem.absorption_spectrum = self.add_spectrum(np.full(471, absorption) if np.ndim(absorption) == 0 else absorption)
-        return self.add_material(gem=gem, flags=MaterialFlag.CASTER)
+        return self.add_material(gem=gem, flags=MaterialFlag.CASTER, medium=medium)
 
     # ---- Geometry ----
 

@@ -66,7 +66,7 @@ class CameraPath {
     ray_.origin += ray_.direction * ray_.t_min;
     ray_.t_max -= ray_.t_min;
     ray_.t_min = 0;
-    media_ = pass.camera_media;
+    entered_ = pass.camera_media;
     if (!pass.camera_interior.empty()) {
       interior_ = pass.camera_interior;
       // Within a gem radiance is n^2 times what it is outside; the film keeps L / n^2, so that white stays white.
@@ -89,6 +89,7 @@ class CameraPath {
     const Hit hit = next_hit(scene_, ray_, ray_kind_);
     ++counts_.path;
     if (hit.valid()) absorb(scene_, interior_, hit.t, w_, throughput_);
+    media_ = media_that_fill(scene_, entered_, interior_);
     if (!media_.empty()) {
       if (travel_in_medium(hit.t)) return;
     } else {
@@ -101,7 +102,7 @@ class CameraPath {
     material_ = &scene_.material_at(hit);
     if (material_->no_surface()) {
       surface_.sp = scene_.shading_point(ray_, hit);
-      cross_medium(*material_, surface_.sp, media_);
+      cross_medium(*material_, surface_.sp, entered_);
       go_straight_on();
       return;
     }
@@ -109,6 +110,7 @@ class CameraPath {
     if (surface_.is_gem) note_way_in(surface_.boundary);
     if (surface_.nothing) {
       cross_boundary(surface_.boundary, interior_);
+      cross_medium(*material_, surface_.sp, entered_);
       go_straight_on();
       return;
     }
@@ -209,7 +211,7 @@ class CameraPath {
       return;
     }
     if (sample.scattering & kScatterTransparent) {
-      cross_medium(*material_, surface_.sp, media_);
+      cross_medium(*material_, surface_.sp, entered_);
       throughput_ *= sample.weight;
       update_path_pdf(sample);
       if (++transparent_layers_ > uint32_t(std::max(1, settings_.transparent_depth)) || throughput_.is_zero()) alive_ = false;
@@ -253,7 +255,7 @@ class CameraPath {
         cross_boundary(surface_.boundary, interior_);
         eta_scale_ *= sqr(sample.eta);
       }
-      cross_medium(*material_, surface_.sp, media_);
+      cross_medium(*material_, surface_.sp, entered_);
     }
 
     ray_kind_ = sample.scattering & kScatterTransmit  ? uint32_t(OPAL_RAY_TRANSMISSION)
@@ -379,7 +381,7 @@ class CameraPath {
     const Ray shadow{origin, sample.wi, 0, std::isfinite(sample.distance) ? sample.distance * (1 - 1e-5f) : kInfinity,
                      ray_.time};
     ++counts_.shadow;
-    through = passage(scene_, shadow, media_, settings_.transparent_depth, w_, RandomStream(sampler_, dimension));
+    through = passage(scene_, shadow, entered_, interior_, settings_.transparent_depth, w_, RandomStream(sampler_, dimension));
     return !through.blocked();
   }
 
@@ -887,7 +889,8 @@ class CameraPath {
   Ray ray_;
   uint32_t ray_kind_ = OPAL_RAY_CAMERA;
   InteriorStack interior_;
-  MediumSet media_;
+  MediumSet entered_;  // whose boundaries it has come through
+  MediumSet media_;    // those that are there
   const Material *material_ = nullptr;
   Surface surface_;
   LastEvent last_;

@@ -97,11 +97,13 @@ EventClass classify(const Surface &surface, const BsdfSample &sample, const Wave
   return u * total < value.sharp.sum() ? EventClass::Sharp : EventClass::Rough;
 }
 
-Passage passage(const Scene &scene, const Ray &ray, MediumSet media, int max_layers, const Wavelengths &w,
-                RandomStream random) {
+Passage passage(const Scene &scene, const Ray &ray, MediumSet entered, const InteriorStack &interior, int max_layers,
+                const Wavelengths &w, RandomStream random) {
   Passage result;
   Ray rest = ray;
   const auto attenuate = [&](float distance) {
+    if (entered.empty()) return;
+    const MediumSet media = media_that_fill(scene, entered, interior);
     if (media.empty()) return;
     if (StratifiedMedia::holds(scene, media)) {
       const Spectrum through = StratifiedMedia(scene, media, w, rest).transmittance(distance);
@@ -134,7 +136,7 @@ Passage passage(const Scene &scene, const Ray &ray, MediumSet media, int max_lay
       result.surfaces *= run_transparency(scene, material.surface, sp);
       if (result.blocked()) return result;
     }
-    cross_medium(material, sp, media);
+    cross_medium(material, sp, entered);
     rest.origin = offset_origin(sp, rest.direction);
     rest.t_max -= hit.t;
     if (!(rest.t_max > 0)) return result;

@@ -40,15 +40,16 @@ Spectrum rough_towards_camera(const Scene &scene, const Surface &surface, const 
 // The class of a sampled event: of a sum of rough and sharp lobes the sharp share is taken with its probability (`u`).
 EventClass classify(const Surface &surface, const BsdfSample &sample, const Wavelengths &w, Transport transport, float u);
 
-// What passes along a shadow ray that starts in `media`: `surfaces` is 0 behind opaque things, else the product of the
-// straight-through transmittances of at most `max_layers` surfaces (linear Rec.709); `medium` is the media's share, exact where
-// they are homogeneous and by ratio tracking where they vary, as f / p(hero). Multiple importance wants the densities
+// What passes along a shadow ray that starts in these media and gems: `surfaces` is 0 behind opaque things, else the product of
+// the straight-through transmittances of at most `max_layers` surfaces (linear Rec.709); `medium` is the media's share, exact
+// where they are homogeneous and by ratio tracking where they vary, as f / p(hero). Multiple importance wants the densities
 // relative to the hero's: `light_pdf` of this connection, `path_pdf` of a path that comes through by itself.
 struct Passage {
   Vec3 surfaces{1, 1, 1};
   Spectrum medium{1.0f}, light_pdf{1.0f}, path_pdf{1.0f};
   bool blocked() const { return max_component(surfaces) <= 0; }
 };
-Passage passage(const Scene &scene, const Ray &ray, MediumSet media, int max_layers, const Wavelengths &w, RandomStream random);
+Passage passage(const Scene &scene, const Ray &ray, MediumSet entered, const InteriorStack &interior, int max_layers,
+                const Wavelengths &w, RandomStream random);
 
 }  // namespace opal

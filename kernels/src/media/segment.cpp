@@ -2,7 +2,6 @@
 #include "media/segment.h"
 
 #include "media/stratified.h"
-#include "scene/interior.h"
 
 #include <algorithm>
 
@@ -136,6 +135,19 @@ float GatherDistance::sample(float pick, float u, float &density_out) const {
   t = clamp(t, 0.0f, t_max_);
   density_out = density(t);
   return t;
+}
+
+MediumSet media_that_fill(const Scene &scene, const MediumSet &entered, const InteriorStack &interior) {
+  const InteriorStack::Entry *solid = interior.current();
+  if (!solid) return entered;
+  MediumSet there;
+  for (int i = 0; i < entered.count(); ++i) {
+    const uint32_t instance = entered[i].instance;
+    if (instance >= scene.instances.size()) continue;  // the world's
+    const bool smaller = !interior.contains(instance) && scene.instances[instance].order > solid->order;
+    if (instance == solid->instance || smaller) there.enter(instance, entered[i].medium);
+  }
+  return there;
 }
 
 MediumSet media_at(const Scene &scene, const Vec3 &p) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/sampler.h"
+#include "scene/interior.h"
 #include "scene/scene.h"
 
 namespace opal {
@@ -80,7 +81,12 @@ inline void cross_medium(const Material &material, const ShadingPoint &sp, Mediu
   else set.enter(sp.instance_index, material.medium);
 }
 
-// The media at a point, found by looking along a ray for boundaries that are left without having been entered.
+// Of the media whose boundaries a path has entered, those that are there. A solid or liquid leaves no room for the fog round
+// it: in a gem there is the gem's own medium and what smaller bodies bring into it, by the rule that says which of
+// overlapping interiors counts. It depends on the place alone and not on the way there.
+MediumSet media_that_fill(const Scene &scene, const MediumSet &entered, const InteriorStack &interior);
+
+// The media entered at a point, found by looking along a ray for boundaries that are left without having been entered.
 MediumSet media_at(const Scene &scene, const Vec3 &p);
 
 }  // namespace opal

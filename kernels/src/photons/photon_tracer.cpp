@@ -80,7 +80,7 @@ class PhotonPath {
     ray_ = sample.ray;
     flux_ = sample.flux * (1.0f / (float(task_.count) * density));
     start_ = flux_.max();
-    media_ = scene_.any_medium ? media_at(scene_, ray_.origin) : MediumSet{};
+    entered_ = scene_.any_medium ? media_at(scene_, ray_.origin) : MediumSet{};
     interior_ = interior_at(scene_, ray_.origin);
     return flux_.is_finite() && start_ > 0;
   }
@@ -89,6 +89,7 @@ class PhotonPath {
     const uint32_t kind = sharp_events_ + rough_events_ == 0 ? uint32_t(OPAL_RAY_ALL & ~OPAL_RAY_CAMERA) : ray_kind_;
     const Hit hit = next_hit(scene_, ray_, kind);
     ++out_.rays;
+    media_ = media_that_fill(scene_, entered_, interior_);
     if (!media_.empty()) {
       trail_.close();
       bool alive = true;
@@ -103,7 +104,7 @@ class PhotonPath {
     if (material.no_surface()) {
       trail_.close();
       surface_.sp = scene_.shading_point(ray_, hit);
-      cross_medium(material, surface_.sp, media_);
+      cross_medium(material, surface_.sp, entered_);
       go_on(ray_.direction);
       return true;
     }
@@ -111,6 +112,7 @@ class PhotonPath {
     if (surface_.nothing) {
       trail_.close();
       cross_boundary(surface_.boundary, interior_);
+      cross_medium(material, surface_.sp, entered_);
       go_on(ray_.direction);
       return true;
     }
@@ -135,7 +137,7 @@ class PhotonPath {
     }
     if (!flux_.is_finite() || flux_.is_zero()) return false;
     if (sample.scattering & kScatterTransparent) {
-      cross_medium(material, surface_.sp, media_);
+      cross_medium(material, surface_.sp, entered_);
       go_on(ray_.direction);
       return true;
     }
@@ -146,7 +148,7 @@ class PhotonPath {
     if (!(sample.scattering & kScatterSpecular) && ++rough_bounces_ > settings_.max_depth) return false;
     if (sample.scattering & kScatterTransmit) {
       if (surface_.is_gem) cross_boundary(surface_.boundary, interior_);
-      cross_medium(material, surface_.sp, media_);
+      cross_medium(material, surface_.sp, entered_);
     }
     ray_kind_ = sample.scattering & kScatterTransmit  ? uint32_t(OPAL_RAY_TRANSMISSION)
                 : sample.scattering & kScatterDiffuse ? uint32_t(OPAL_RAY_DIFFUSE)
@@ -416,7 +418,7 @@ class PhotonPath {
     if (radiance.is_zero() || !radiance.is_finite()) return;
     const Ray shadow{offset_origin(surface.sp, seen.to_camera), seen.to_camera, 0, seen.distance, ray_.time};
     const Passage through =
-        passage(scene_, shadow, media_, settings_.transparent_depth, w_,
+        passage(scene_, shadow, entered_, interior_, settings_.transparent_depth, w_,
                 RandomStream(sampler_, bounce_dimension(uint32_t(sharp_events_ + rough_events_), kDimSpare)));
     ++out_.rays;
     if (through.blocked()) return;
@@ -448,7 +450,8 @@ class PhotonPath {
   Ray ray_;
   uint32_t ray_kind_ = OPAL_RAY_DIFFUSE;
   InteriorStack interior_;
-  MediumSet media_;
+  MediumSet entered_;  // whose boundaries it has come through
+  MediumSet media_;    // those that are there
   Surface surface_;
   Spectrum flux_{0.0f}, path_pdf_{1.0f};
   float start_ = 0;

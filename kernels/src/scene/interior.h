@@ -33,6 +33,11 @@ class InteriorStack {
   // The one that would count without the entry of `instance` and `material` (the latest such entry).
   const Entry *without(uint32_t instance, uint32_t material) const { return best(find(instance, material)); }
   bool contains(uint32_t instance, uint32_t material) const { return find(instance, material) >= 0; }
+  bool contains(uint32_t instance) const {
+    for (int i = 0; i < count_; ++i)
+      if (entries_[i].instance == instance) return true;
+    return false;
+  }
 
   void enter(const Entry &entry) {
     if (count_ < kCapacity) entries_[count_++] = entry;
