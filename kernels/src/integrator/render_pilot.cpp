@@ -31,6 +31,12 @@ PilotPixel look_through(const PassContext &pass, uint32_t x, uint32_t y, RayCoun
   return {mean, std::max(0.0f, (spread.x + spread.y + spread.z) / 3) * (kPilotPaths / (kPilotPaths - 1.0f))};
 }
 
+// The whole frame is looked at whatever the region: a part rendered again is the same to the bit.
+opal_render_settings of_whole_frame(opal_render_settings settings) {
+  settings.region[0] = settings.region[1] = 0, settings.region[2] = settings.width, settings.region[3] = settings.height;
+  return settings;
+}
+
 // With fewer photons fewer are gathered, so that one estimate blurs no wider: the passes' mean makes up for its noise.
 void scale_photons(opal_render_settings &settings, double factor) {
   constexpr int kFewest = 4;
@@ -46,7 +52,8 @@ float mean_square(const Vec3 &v) { return (sqr(v.x) + sqr(v.y) + sqr(v.z)) / 3; 
 bool Render::learn_emission() {
   const Stopwatch start;
   const uint32_t first_round = std::min(kPilotPhotons, uint32_t(settings_.photons_per_pass)), n = 3 * first_round;
-  PassContext pass(scene_, settings_, filter_, 0);
+  const opal_render_settings settings = of_whole_frame(settings_);
+  PassContext pass(scene_, settings, filter_, 0);
   const PhotonTask task{n, kStreamPilot, true, scene_.any_medium};
   std::vector<EmissionTrial> trials;
   std::unique_ptr<EmissionGuide> guide;
@@ -67,13 +74,11 @@ bool Render::learn_emission() {
 }
 
 // Two photon maps of the same size lie beside the same camera paths: what differs between the two is the photons' noise alone.
-// The whole frame is looked at whatever its region: a part rendered again is the same to the bit.
 bool Render::plan_work() {
   const opal_render_statistics before = statistics_;
   const Stopwatch start;
-  opal_render_settings settings = settings_;
+  opal_render_settings settings = of_whole_frame(settings_);
   const int frame_width = settings.width, frame_height = settings.height;
-  settings.region[0] = settings.region[1] = 0, settings.region[2] = frame_width, settings.region[3] = frame_height;
   const int blocks_x = (frame_width + kPlanBlock - 1) / kPlanBlock, blocks_y = (frame_height + kPlanBlock - 1) / kPlanBlock;
   std::vector<PilotBlock> blocks(size_t(blocks_x) * size_t(blocks_y));
   const bool photons = wants_photons();
@@ -115,7 +120,7 @@ bool Render::plan_work() {
       const int y = std::min(frame_height - 1, y0 + (k >> 1) * kQuarter + int((h >> 8) % kQuarter));
       PilotPixel found[2];
       for (size_t half = 0; half < passes.size(); ++half)
-        found[half] = look_through(passes[half], uint32_t(x + settings_.region[0]), uint32_t(y + settings_.region[1]), counts);
+        found[half] = look_through(passes[half], uint32_t(x), uint32_t(y), counts);
       block.brightness += found[0].mean / float(kPilotPixels);
       block.path_variance += found[0].variance / float(kPilotPixels);
       if (photons)
