@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`light.opal`: the spectrum of a lamp."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import bpy

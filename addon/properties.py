@@ -4,8 +4,6 @@
 Lengths are metres, wavelengths nm, angles radians. The names are public: scripts and saved files depend on them.
 """
 
-from __future__ import annotations
-
 import bpy
 from bpy.props import (
     BoolProperty,

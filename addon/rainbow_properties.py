@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Settings of rainbows: the drops of a material or of the world, and the filter before a camera's lens."""
 
-from __future__ import annotations
-
 import math
 
 import bpy

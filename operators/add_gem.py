@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Add › Mesh › Gem: a stone of a cut and a species, at real size, from its proportions."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

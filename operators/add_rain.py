@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Add › Volume › Rain: a curtain of drops where a camera sees the bow, and a word where it cannot."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import bpy

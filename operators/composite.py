@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Opal's light in a Cycles picture: the base by Cycles, Opal's layers over it, and compositor nodes to tune them by."""
 
-from __future__ import annotations
-
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty
 
-from . import compositor, cycles_base, float_images, layers, render_scene
-from .render_layers import WritesFile, image_name
+from . import layer_names
+from .render_layers import WritesFile
 
 
 class OPAL_OT_composite(bpy.types.Operator, WritesFile):
@@ -21,7 +19,7 @@ class OPAL_OT_composite(bpy.types.Operator, WritesFile):
     layers: EnumProperty(
         name="Layers",
         description="Which of Opal's layers are laid over the base; what is left out is missing from the picture",
-        items=layers.ITEMS[:4],
+        items=layer_names.ITEMS[:4],
         options={"ENUM_FLAG"},
         default={"CAUSTICS", "GEMS", "MEDIA", "RAINBOW"},
     )
@@ -60,6 +58,8 @@ class OPAL_OT_composite(bpy.types.Operator, WritesFile):
     def execute(self, context: bpy.types.Context) -> set[str]:
         from opal_kernels.binding import OpalError
 
+        from . import compositor, cycles_base, float_images, layers, render_scene
+
         chosen = set(self.layers) | ({"TRANSMITTANCE"} if self.attenuation == "LAYER" else set())
         try:
             rendered = render_scene.opal(context, layers.passes(chosen))
@@ -69,10 +69,10 @@ class OPAL_OT_composite(bpy.types.Operator, WritesFile):
             if base.picture.shape != rendered.picture.shape:
                 raise render_scene.RenderFailed("Cycles and Opal gave pictures of different sizes: turn Crop to Render Region on.")
             result = layers.composite(base.picture, over)
-            images = {name: float_images.put(image_name(name), pixels) for name, pixels in over.items()}
+            images = {name: float_images.put(layer_names.image_name(name), pixels) for name, pixels in over.items()}
             images["BASE"] = float_images.put("Opal Base", base.picture)
             float_images.put("Opal Composite", result)
-            named = {layers.LABELS[name].replace(" ", ""): pixels for name, pixels in over.items()}
+            named = {layer_names.LABELS[name].replace(" ", ""): pixels for name, pixels in over.items()}
             told = self.write(context, {"Combined": result, "Base": base.picture, **named})
         except (render_scene.RenderFailed, OpalError) as error:
             self.report({"ERROR"}, str(error))
@@ -84,6 +84,8 @@ class OPAL_OT_composite(bpy.types.Operator, WritesFile):
         return {"FINISHED"}
 
     def _cycles_settings(self, scene: bpy.types.Scene) -> dict[str, object]:
+        from . import cycles_base
+
         settings = cycles_base.settings(scene)
         if self.use_scene_settings:
             settings = {name: settings[name] for name in ("caustics_reflective", "caustics_refractive")}

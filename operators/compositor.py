@@ -15,7 +15,7 @@ from typing import Any
 
 import bpy
 
-from . import layers
+from . import layer_names
 
 NAME = "Opal Composite"
 _IS_GROUP = bpy.app.version >= (5, 0, 0)
@@ -48,14 +48,14 @@ def _fill(tree: Any, images: Mapping[str, Any], exposures: Mapping[str, float]) 
     alpha = made.alpha(color)
     row = 1
     if "TRANSMITTANCE" in images:
-        through = made.picture(layers.LABELS["TRANSMITTANCE"], images["TRANSMITTANCE"], row)
+        through = made.picture(layer_names.LABELS["TRANSMITTANCE"], images["TRANSMITTANCE"], row)
         color = made.mix("MULTIPLY", color, through, "Attenuation")
         alpha = made.math("MULTIPLY", alpha, made.alpha(through))
         row += 1
-    for identifier in layers.ADDED:
+    for identifier in layer_names.ADDED:
         if identifier not in images:
             continue
-        label = layers.LABELS[identifier]
+        label = layer_names.LABELS[identifier]
         picture = made.picture(label, images[identifier], row)
         color = made.mix("ADD", color, made.exposed(label, picture, exposures.get(f"{label} Exposure", 0.0), row), f"Add {label}")
         alpha = made.math("ADD", alpha, made.alpha(picture))

@@ -32,7 +32,7 @@ def put(name: str, pixels: np.ndarray, about: str = "") -> Any:
     bpy.types.Image
     """
     height, width, channels = pixels.shape
-    image = _own(name)
+    image = own(name)
     if image is not None and (tuple(image.size) != (width, height) or not image.is_float):
         bpy.data.images.remove(image)
         image = None
@@ -48,7 +48,7 @@ def put(name: str, pixels: np.ndarray, about: str = "") -> Any:
     return image
 
 
-def _own(name: str) -> Any:
+def own(name: str) -> Any:
     """Opal's image of that name, with or without a number after it."""
     for image in bpy.data.images:
         if image.library is None and image.get(KEY) is not None and (image.name == name or image.name.rsplit(".", 1)[0] == name):

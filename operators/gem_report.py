@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The eye of a gemmologist: light return, fire, leakage and the tilt curve of the active stone, as numbers and as a page."""
 
-from __future__ import annotations
-
 import math
 import threading
 from pathlib import Path
@@ -126,8 +124,7 @@ class OPAL_OT_gem_report(bpy.types.Operator):
             self.report({"INFO"}, "The gem report was stopped.")
             return {"CANCELLED"}
         image = image_files.to_image(_NAME, work.page)
-        text = bpy.data.texts.get(_NAME) or bpy.data.texts.new(_NAME)
-        text.from_string(work.table)
+        text = image_files.to_text(_NAME, work.table)
         if self.filepath:
             path = Path(bpy.path.abspath(self.filepath)).with_suffix(".png")
             try:

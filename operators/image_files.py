@@ -8,24 +8,27 @@ from typing import Any
 
 import bpy
 
+# Custom property of texts that Opal made.
+_KEY = "opal_text"
+
 
 def to_image(name: str, pixels: Any) -> bpy.types.Image:
-    """The image of this name in the file, made or replaced, with these pixels packed into it."""
-    import numpy as np
+    """Opal's image of this name, made or filled anew, with these pixels packed into it; a stranger's image of that name is left alone."""
+    from . import float_images
 
-    height, width = pixels.shape[:2]
-    image = bpy.data.images.get(name)
-    if image is None or tuple(image.size) != (width, height) or not image.is_float:
-        if image is not None:
-            bpy.data.images.remove(image)
-        image = bpy.data.images.new(name, width, height, alpha=False, float_buffer=True)
+    image = float_images.put(name, pixels[::-1])
     image.colorspace_settings.name = "Linear Rec.709"
-    flat = np.ones((height, width, 4), np.float32)
-    flat[..., :3] = pixels[::-1]
-    image.pixels.foreach_set(flat.reshape(-1))
-    image.update()
-    image.pack()
     return image
+
+
+def to_text(name: str, content: str) -> bpy.types.Text:
+    """Opal's text of this name, made or written anew; a stranger's text of that name is left alone."""
+    text = next((t for t in bpy.data.texts if t.library is None and t.get(_KEY) == name), None)
+    if text is None:
+        text = bpy.data.texts.new(name)
+        text[_KEY] = name
+    text.from_string(content)
+    return text
 
 
 def save_png(path: Path, pixels: Any) -> None:

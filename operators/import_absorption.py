@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A measured absorption curve from a CSV file for the gem of the active material."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import bpy

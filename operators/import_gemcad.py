@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """File › Import › GemCad: a design from a cutter's `.asc` file as a stone of real size."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import bpy

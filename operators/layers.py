@@ -14,17 +14,7 @@ from typing import Any
 
 import numpy as np
 
-# Identifier, name, description; those that are added to the base carry their pass's name.
-ADDED = ("CAUSTICS", "GEMS", "MEDIA", "RAINBOW")
-ITEMS = (
-    ("CAUSTICS", "Caustics", "Light that gems, glass and mirrors throw on ordinary surfaces, and light that media throw there"),
-    ("GEMS", "Gems", "Gems and what is seen through them, with the alpha of what they cover"),
-    ("MEDIA", "Media", "What media scatter or give off towards the camera"),
-    ("RAINBOW", "Rainbow", "What rain sends to the camera"),
-    ("TRANSMITTANCE", "Transmittance", "What media and rain let through of what lies behind them; multiplies the base"),
-    ("FULL", "Full Picture", "The whole of Opal's render"),
-)
-LABELS = {identifier: name for identifier, name, _ in ITEMS}
+from .layer_names import ADDED
 
 
 def passes(chosen: Collection[str]) -> list[Any]:

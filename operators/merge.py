@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Films of passes that were rendered apart, merged to the bits of one render."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -10,8 +8,6 @@ from typing import Any
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
-
-from . import float_images
 
 # Names of a film's pictures, as Blender's passes have them.
 _NAMES = {"COMBINED": "Combined", "DEPTH": "Depth"}
@@ -85,6 +81,7 @@ class OPAL_OT_merge(bpy.types.Operator, ImportHelper):
 
     def _keep(self, merged: Any, frame: int, layer: str, groups: int) -> str:
         from ..addon.film_files import with_frame
+        from . import float_images
 
         picture = merged.picture()
         if self.use_denoise:

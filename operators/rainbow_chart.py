@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A sheet that compares the theories of the rainbow: a picture in Blender, PNG and EXR files, the errors as text."""
 
-from __future__ import annotations
-
 import threading
 from pathlib import Path
 from typing import Any
 
 import bpy
 from bpy.props import BoolProperty, FloatProperty, IntProperty, StringProperty
+
+from . import image_files
 
 _NAME = "Rainbow Chart"
 
@@ -83,16 +83,15 @@ class OPAL_OT_rainbow_chart(bpy.types.Operator):
         if context.workspace is not None:
             context.workspace.status_text_set(None)
 
-    def _finish(self, _context: bpy.types.Context, work: _Work) -> set[str]:
+    def _finish(self, _context: bpy.types.Context, work: Any) -> set[str]:
         if work.sentence:
             self.report({"ERROR"}, work.sentence)
             return {"CANCELLED"}
         if work.pixels is None:
             self.report({"INFO"}, "The chart was stopped.")
             return {"CANCELLED"}
-        image = _to_image(_NAME, work.pixels)
-        text = bpy.data.texts.get(_NAME) or bpy.data.texts.new(_NAME)
-        text.from_string(work.table + "\n")
+        image = image_files.to_image(_NAME, work.pixels)
+        text = image_files.to_text(_NAME, work.table + "\n")
         written = []
         if self.filepath:
             path = Path(bpy.path.abspath(self.filepath)).with_suffix("")
@@ -137,25 +136,6 @@ class _Work(threading.Thread):
             pass
         except (ValueError, MemoryError) as error:
             self.sentence = str(error) or "There is not enough memory for the chart."
-
-
-def _to_image(name: str, pixels: Any) -> bpy.types.Image:
-    """The image of a name with these pixels, linear Rec.709, rows from the top."""
-    import numpy as np
-
-    height, width = pixels.shape[:2]
-    image = bpy.data.images.get(name)
-    if image is None or tuple(image.size) != (width, height) or not image.is_float:
-        if image is not None:
-            bpy.data.images.remove(image)
-        image = bpy.data.images.new(name, width, height, alpha=False, float_buffer=True)
-    image.colorspace_settings.name = "Linear Rec.709"
-    flat = np.ones((height, width, 4), np.float32)
-    flat[..., :3] = pixels[::-1]
-    image.pixels.foreach_set(flat.reshape(-1))
-    image.update()
-    image.pack()
-    return image
 
 
 def _save_png(path: Path, pixels: Any) -> str:

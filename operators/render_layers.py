@@ -1,21 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Renders Opal's layers of the current frame into float images and, by choice, into a multilayer OpenEXR file."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
 import bpy
-import numpy as np
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 
-from . import float_images, layers, render_scene
-
-
-def image_name(identifier: str) -> str:
-    """The image that holds a layer."""
-    return f"Opal {layers.LABELS[identifier]}"
+from . import layer_names
 
 
 class WritesFile:
@@ -34,11 +26,12 @@ class WritesFile:
         options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
 
-    def write(self, context: Any, pictures: dict[str, np.ndarray]) -> str:
+    def write(self, context: Any, pictures: dict[str, Any]) -> str:
         """Writes the file if asked to; returns what to tell, and raises OpalError where it cannot."""
         if not self.use_file:
             return ""
         from ..addon.film_files import with_frame
+        from . import float_images
 
         if self.filepath.startswith("//") and not bpy.data.filepath:
             from opal_kernels.binding import OpalError
@@ -63,7 +56,7 @@ class OPAL_OT_render_layers(bpy.types.Operator, WritesFile):
     layers: EnumProperty(
         name="Layers",
         description="Which layers are rendered",
-        items=layers.ITEMS,
+        items=layer_names.ITEMS,
         options={"ENUM_FLAG"},
         default={"CAUSTICS", "GEMS", "MEDIA", "RAINBOW", "TRANSMITTANCE"},
     )
@@ -75,6 +68,8 @@ class OPAL_OT_render_layers(bpy.types.Operator, WritesFile):
     def execute(self, context: bpy.types.Context) -> set[str]:
         from opal_kernels.binding import OpalError
 
+        from . import float_images, layers, render_scene
+
         if not self.layers:
             self.report({"ERROR"}, "No layer is chosen.")
             return {"CANCELLED"}
@@ -82,8 +77,8 @@ class OPAL_OT_render_layers(bpy.types.Operator, WritesFile):
             rendered = render_scene.opal(context, layers.passes(self.layers))
             found = layers.pictures(rendered.films, self.layers, context.scene.render.film_transparent)
             for identifier, pixels in found.items():
-                float_images.put(image_name(identifier), pixels)
-            told = self.write(context, {layers.LABELS[name].replace(" ", ""): pixels for name, pixels in found.items()})
+                float_images.put(layer_names.image_name(identifier), pixels)
+            told = self.write(context, {layer_names.LABELS[name].replace(" ", ""): pixels for name, pixels in found.items()})
         except (render_scene.RenderFailed, OpalError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}

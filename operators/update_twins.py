@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Brings the node trees that Cycles and EEVEE show up to date with Opal's settings."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import bpy

@@ -48,6 +48,7 @@ def snapshot() -> dict[str, list[str]]:
         "menus": sorted(f for kind in types.values() for f in _functions_of_opal(getattr(getattr(kind, "draw", None), "_draw_funcs", ()))),
         "panels": sorted(name for name, kind in types.items() if "OPAL" in getattr(kind, "COMPAT_ENGINES", ())),
         "modules": sorted(m for m in sys.modules if m.startswith("opal_kernels")),
+        "arrays": sorted(m for m, module in list(sys.modules.items()) if m.startswith(PACKAGE) and hasattr(module, "np")),
         "addons": sorted(bpy.context.preferences.addons.keys()),
     }
 

@@ -77,6 +77,11 @@ def test_enabling_does_not_load_the_kernels(cycle):
     assert [m for m in cycle["enabled"]["modules"] if m.startswith("opal_kernels.optics")] == []
 
 
+def test_enabling_loads_no_numpy(cycle):
+    """It costs more than all the rest: what computes is loaded when it is first needed."""
+    assert cycle["enabled"]["arrays"] == []
+
+
 @pytest.mark.parametrize("what", REGISTERED)
 def test_disabling_leaves_nothing(cycle, what):
     assert _added(cycle, "disabled", what) == []
