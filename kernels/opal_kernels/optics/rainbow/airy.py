@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Airy's bow: the cubic wavefront at the caustic, with supernumeraries, in both polarisations, for k = 1 and 2.
+"""Airy's bow: the cubic wavefront at the caustic, with supernumeraries, in both polarisations, for k = 1 and 2
+(and for the fifth order, whose bow lies in the dark band).
 
 With x = 2 pi a/lambda, delta = D - D_k into the bright side and h of van de Hulst, X = delta x^(2/3)/h^(1/3), and
 
@@ -25,7 +26,7 @@ from opal_kernels.optics.rainbow import background, geometric
 from opal_kernels.optics.rainbow.airy_function import squares
 
 # Over which distance from the caustic Airy's intensity gives way to that of rays.
-_BLEND = {1: (np.radians(14), np.radians(24)), 2: (np.radians(6), np.radians(14))}
+_BLEND = {1: (np.radians(14), np.radians(24)), 2: (np.radians(6), np.radians(14)), 5: (np.radians(2), np.radians(6))}
 
 
 @lru_cache(maxsize=4096)
@@ -50,7 +51,7 @@ def bow(angles_rad: np.ndarray, n: float, x: float, k: int) -> np.ndarray:
     x : float
         Size parameter; below about 500 use Lorenz-Mie.
     k : int
-        Internal reflections, 1 or 2.
+        Internal reflections, 1 and up.
     """
     d_k, sine, h, t0, t1 = caustic(n, k)
     delta = _delta(angles_rad, d_k)
@@ -101,9 +102,9 @@ class Drop:
 
     def __init__(self, n: float) -> None:
         self._n = n
-        self._bows = [k for k in background.BOWS if 1 < n < k + 1]
+        self._bows = [k for k in background.WAVES if 1 < n < k + 1]
         self._densities = background.orders(n)
-        self._rays = sum(self._densities[k] * (1 - _share(background.CENTRES, n, k) if k in self._bows else 1) for k in background.BOWS)
+        self._rays = sum(self._densities[k] * (1 - _share(background.CENTRES, n, k) if k in self._bows else 1) for k in background.WAVES)
 
     def _airy(self, angles_rad: np.ndarray, sizes: np.ndarray, share: np.ndarray) -> np.ndarray:
         total = np.zeros((2, len(angles_rad)))
@@ -124,6 +125,6 @@ class Drop:
         `sizes` are size parameters, `share` their part of the drops' cross-section (sum 1).
         """
         bows = self._rays + self._airy(background.CENTRES, sizes, share) + background.edge(background.CENTRES, sizes, share)
-        rest = self._rays + background.closed(self._densities, bows)
+        rest = self._rays + background.closed(self._densities, bows, background.WAVES)
         grazing = background.edge(angles_rad, sizes, share)
         return background.at(angles_rad, rest) + self._airy(np.asarray(angles_rad, float), sizes, share) + grazing

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a drop does besides its two bows: reflection outside, light passed through, higher orders, and the diffraction lobe.
 
+The fifth order's bow stands at 51 degrees, beside the secondary, and shines into the dark band, where it is half as bright as the
+reflection outside. Rays pile its light up at its edge; theories with waves therefore treat it as they treat the two bows (`WAVES`).
+
 The ray theories and Airy's add this to their bows, so that the dark band and the sky stand right beside them. Densities are per
 unit of light on the drop (integral 1 over all orders for each polarisation), tabulated on `EDGES` and linear between centres.
 
@@ -19,11 +22,13 @@ import numpy as np
 from opal_kernels.optics.rainbow import geometric
 
 BOWS = (1, 2)
+QUINARY = 5
+WAVES = (*BOWS, QUINARY)
 HIGHEST_ORDER = 7
 EDGES = np.linspace(0, np.pi, 3601)  # 0.05 degrees
 CENTRES = (EDGES[1:] + EDGES[:-1]) / 2
 SOLID_ANGLES = 2 * np.pi * (np.cos(EDGES[:-1]) - np.cos(EDGES[1:]))
-_EDGE, _EDGE_FROM, _EDGE_TO = 0.27, np.radians(60), np.radians(141)  # a share of Q_ext's 2 x^(-2/3)
+_EDGE, _EDGE_FROM, _EDGE_TO = 0.25, np.radians(60), np.radians(141)  # a share of Q_ext's 2 x^(-2/3)
 _RAYS = {-1: 2000, 0: 2000, 1: 8000, 2: 8000}
 
 
@@ -38,7 +43,7 @@ def orders(n: float) -> dict[int, np.ndarray]:
     return {k: order_density(n, k) for k in range(-1, HIGHEST_ORDER + 1)}
 
 
-def closed(densities: dict[int, np.ndarray], bows: np.ndarray) -> np.ndarray:
+def closed(densities: dict[int, np.ndarray], bows: np.ndarray, orders: tuple[int, ...] = BOWS) -> np.ndarray:
     """Return the sum of everything but the bows, with the light that passes through scaled so that all integrates to 1.
 
     Parameters
@@ -46,14 +51,16 @@ def closed(densities: dict[int, np.ndarray], bows: np.ndarray) -> np.ndarray:
     densities : dict
         As `orders` returns.
     bows : array (2, 3600)
-        What stands for orders 1 and 2, same units.
+        What stands for `orders`, same units.
+    orders : tuple of int
+        Orders that `bows` stands for.
 
     Returns
     -------
     array (2, 3600)
         Background and bows together integrate to 1 for each polarisation. The correction is a few per cent of the forward light.
     """
-    rest = sum(density for k, density in densities.items() if k not in BOWS and k != 0)
+    rest = sum(density for k, density in densities.items() if k not in orders and k != 0)
     missing = 1 - ((rest + bows) * SOLID_ANGLES).sum(axis=1, keepdims=True)
     through = densities[0]
     return rest + through * np.clip(missing / (through * SOLID_ANGLES).sum(axis=1, keepdims=True), 0, None)

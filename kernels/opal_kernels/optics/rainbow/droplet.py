@@ -16,7 +16,7 @@ The drop is a spheroid of the axis ratio of falling drops (Beard and Chuang, J. 
 Where the trace finds no single clean caustic (seen in some views from an axis
 ratio of 0.93 down) the bow is smeared out, by choice and not by theory. The light seen at one place of the bow is that of the rays in the plane of sun, drop and place; the slight turn of the plane of
 incidence out of it is neglected (none at the bow's top, where twinned bows part). Reflection outside, light passed through and
-higher orders are those of a sphere.
+higher orders are those of a sphere; of these the fifth, whose bow stands in the dark band, is a traced fold as well.
 """
 
 from __future__ import annotations
@@ -293,6 +293,11 @@ class Drop:
                 total += part * (
                     background.at(angles_rad, sun.smooth(self._densities[k], _SMEAR)) if bow is None else bow.intensity(angles_rad, x)
                 )
+            quinary = fold(self._n, background.QUINARY, 1.0, 0.0, 0.0)
+            if quinary is not None:
+                total += part * quinary.intensity(angles_rad, x)
+        if quinary is None:
+            total += background.at(angles_rad, self._densities[background.QUINARY])
         return total
 
     def scattered(self, angles_rad: np.ndarray, sizes: np.ndarray, share: np.ndarray) -> np.ndarray:
@@ -301,10 +306,10 @@ class Drop:
         `sizes` are size parameters, `share` their part of the drops' cross-section (sum 1).
         """
         if self._shape.flattening > 0:  # one place of the bow does not say what all round it sums to: the rays of a sphere do
-            bows = sum(self._densities[k] for k in background.BOWS)
+            bows = sum(self._densities[k] for k in background.WAVES)
         else:
             bows = self._bows(background.CENTRES, sizes, share)
         bows = bows + background.edge(background.CENTRES, sizes, share)
-        rest = background.closed(self._densities, bows)
+        rest = background.closed(self._densities, bows, background.WAVES)
         grazing = background.edge(angles_rad, sizes, share)
         return background.at(angles_rad, rest) + self._bows(np.asarray(angles_rad, float), sizes, share) + grazing
