@@ -158,3 +158,44 @@ def test_flattened_drops_lower_the_bows_top_and_leave_its_feet():
         light = seen - seen.min()
         assert (light * centres(first, last)).sum() / light.sum() == pytest.approx(where, abs=1.5)
     assert np.degrees(float(geometric.bow_radius(1.333, 1)) - centre[0]) == pytest.approx(3.38, abs=0.02)
+
+
+def test_rendered_colours_are_those_of_the_reference():
+    """Both bows of drops of 50 µm under an equal-energy sun, radius 35 to 57 degrees: XYZ per pixel within 4 % of the brightest, 1 % rms.
+
+    The reference keeps the diffraction lobe; without it all the rest is double.
+    """
+    from pathlib import Path
+
+    from opal_kernels.optics import rainbow
+
+    reference = np.load(Path(__file__).resolve().parents[1] / "reference_data" / "rainbow_xyz.npz")
+    nm = np.arange(380.0, 781, 20)
+    angles = np.radians(np.concatenate([np.arange(0.0, 120, 0.5), np.arange(120.0, 180.01, 0.05)]))
+    angles[-1] = np.pi
+    p = rainbow.phase_function("MIE", 50.0, nm, angles, spread=0.05, sizes=24, diffraction=False).mean(axis=0)
+    phase = Phase(kind=PhaseKind.TABLE, wavelengths=nm, angles=angles, values=p)
+    scale, first, last = 0.4, 281, 615
+    flat = np.ones(471)
+    with Scene(threads=2) as scene:
+        medium = scene.add_medium(SIGMA, 1.0, phase)
+        wide = 40 * DEPTH
+        material = scene.add_material(flags=MaterialFlag.NO_SURFACE, medium=medium)
+        scene.add_instances(scene.add_mesh(*box((-wide, -wide, -DEPTH - 1.0), (wide, wide, -1.0))), [np.eye(4)], [material])
+        spectrum = scene.add_spectrum(flat)
+        scene.add_light(Light(type=LightType.SUN, power=STRENGTH, radius=sun.MEAN_RADIUS_RAD, spectrum=spectrum))
+        half = last / (F * scale)
+        scene.set_camera(transform=np.eye(4)[:3], window=(-half, half, -0.5 / (F * scale), 0.5 / (F * scale)))
+        scene.commit()
+        settings = {"width": 2 * last, "height": 1, "region": (last + first, 0, 2 * last, 1), "samples_per_pass": 64}
+        settings |= {"photons_per_pass": 0, "max_depth": 2, "filter": 0, "filter_width": 1.0}
+        with Render(scene, **settings) as render:
+            rgb = render.run(24).film("COMBINED")[0, :, :3].astype(np.float64)
+    xyz = rgb @ np.linalg.inv(colour.rec709_from_xyz()).T
+    radius = np.arctan((np.arange(first, last) + 0.5) / (F * scale))
+    depth = SIGMA * (1.0 + 1 / np.cos(radius))
+    length = (1 - np.exp(-depth * DEPTH)) / depth / np.cos(radius)
+    seen = xyz / (STRENGTH * SIGMA * length)[:, None]
+    expected = 2 * np.array([np.interp(np.degrees(radius), reference["radius_deg"], column) for column in reference["mie_50"].T]).T
+    error = np.abs(seen - expected) / expected.max(axis=0)
+    assert error.max() < 0.04 and np.sqrt((error**2).mean()) < 0.01, (error.max(), np.sqrt((error**2).mean()))
