@@ -14,6 +14,7 @@ from . import (
     properties,
     rainbow_panels,
     report,
+    report_list,
     versions,
 )
 
@@ -26,6 +27,7 @@ _MODULES = (
     media_panels,
     rainbow_panels,
     light_panels,
+    report_list,
     blender_panels,
     versions,
 )

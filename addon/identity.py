@@ -26,3 +26,24 @@ def key_of(block: Any) -> Any:
         return number
     library = getattr(original, "library", None)
     return original.name_full, library.filepath if library is not None else ""
+
+
+class Named(str):
+    """A data-block's name that knows which data-block it is of, so that a report can lead to it.
+
+    Attributes
+    ----------
+    kind : str
+        Blender's kind of data-block, such as ``OBJECT``.
+    key : int or tuple
+        See `key_of`.
+    """
+
+    kind: str
+    key: Any
+
+    def __new__(cls, block: Any) -> Named:
+        original = getattr(block, "original", None) or block
+        self = super().__new__(cls, original.name)
+        self.kind, self.key = getattr(original, "id_type", ""), key_of(original)
+        return self

@@ -7,8 +7,6 @@ from typing import Any
 
 import bpy
 
-from . import report
-
 
 class OpalPanel(bpy.types.Panel):
     """Shown while Opal is the engine."""
@@ -33,21 +31,6 @@ class _RenderPanel(OpalPanel):
 
     def draw_settings(self, layout: Any, opal: Any, context: Any) -> None:
         raise NotImplementedError
-
-
-class OPAL_RENDER_PT_report(_RenderPanel):
-    """What the last render could not do as set."""
-
-    bl_label = "Report"
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        return super().poll(context) and bool(report.of(context.scene).entries)
-
-    def draw(self, context: Any) -> None:
-        column = self.layout.column(align=True)
-        for entry in report.of(context.scene).entries:
-            column.label(text=str(entry), icon="ERROR")
 
 
 class OPAL_RENDER_PT_sampling(_RenderPanel):
@@ -262,7 +245,6 @@ class OPAL_OBJECT_PT_ray_visibility(OpalPanel):
 
 
 CLASSES = (
-    OPAL_RENDER_PT_report,
     OPAL_RENDER_PT_sampling,
     OPAL_RENDER_PT_denoise,
     OPAL_RENDER_PT_photons,

@@ -15,6 +15,7 @@ from . import (
     panels,
     rainbow_chart,
     render_layers,
+    select_reported,
     update_twins,
 )
 
@@ -29,6 +30,7 @@ _MODULES = (
     composite,
     compare_cycles,
     merge,
+    select_reported,
     update_twins,
     panels,
 )

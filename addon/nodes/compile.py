@@ -42,7 +42,7 @@ def compile_material(material: Any, context: NodeContext) -> CompiledProgram:
         return _finished(compiler)
     output = material.node_tree.get_output_node(_TARGET)
     if output is None:
-        compiler.problem("", "The material has no output node; it is black.")
+        compiler.problem("", "The material has no output node; it is black.", lost=True)
         return _finished(compiler)
     frame = Frame(material.node_tree)
     compiler.default_normal = _displaced_normal(compiler, frame, output, material)
@@ -69,7 +69,7 @@ def compile_world(world: Any, context: NodeContext) -> CompiledProgram:
         return _finished(compiler)
     output = world.node_tree.get_output_node(_TARGET)
     if output is None:
-        compiler.problem("", "The world has no output node; it is black.")
+        compiler.problem("", "The world has no output node; it is black.", lost=True)
         return _finished(compiler)
     _shade(compiler, Frame(world.node_tree), output)
     return _finished(compiler)
@@ -98,13 +98,13 @@ def compile_light_nodes(light: Any, context: NodeContext) -> tuple[tuple[float, 
         return white, []
     output = light.node_tree.get_output_node(_TARGET)
     if output is None:
-        compiler.problem("", "The lamp has no output node; it is dark.")
+        compiler.problem("", "The lamp has no output node; it is dark.", lost=True)
         return (0.0, 0.0, 0.0), compiler.problems
     _shade(compiler, Frame(light.node_tree), output)
     total = np.zeros(3)
     for op, _mode, values in compiler.builder.lobes:
         if op is not Op.EMISSION:
-            compiler.problem("", "Only Emission lights a lamp; other shaders are left out.")
+            compiler.problem("", "Only Emission lights a lamp; other shaders are left out.", lost=True)
             continue
         parts = []
         for name, value in zip(("mix factor", "colour", "strength"), values[:3], strict=True):
@@ -146,7 +146,7 @@ def _displaced_normal(compiler: Compiler, frame: Frame, output: Any, material: A
     if source.node is None:
         return None
     if source.node.bl_idname != "ShaderNodeDisplacement":
-        compiler.problem(output.name, f"Displacement by a {source.node.bl_label} node is not read; the surface stays smooth.")
+        compiler.problem(output.name, f"Displacement by a {source.node.bl_label} node is not read; the surface stays smooth.", lost=True)
         return None
     if material.displacement_method == "DISPLACEMENT":
         compiler.problem(output.name, "The surface is not moved by displacement; it is shaded as bump.")
@@ -166,7 +166,7 @@ def _finished(compiler: Compiler) -> CompiledProgram:
     try:
         code, constants, n_registers = compiler.builder.finish()
     except OverflowError as error:
-        compiler.problem("", f"The node tree is too large for one program: {error}. A grey surface is shown.")
+        compiler.problem("", f"The node tree is too large for one program: {error}. A grey surface is shown.", lost=True)
         builder = ProgramBuilder()
         builder.emit(Op.DIFFUSE, 0, ONE, constant(0.8, 0.8, 0.8), ZERO, None)
         flags = flags_of(builder)

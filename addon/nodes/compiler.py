@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from ..identity import Named
 from . import operations as ops
 from .context import NodeContext, Problem
 from .operations import Op
@@ -90,9 +91,9 @@ class NodeView:
         """The material, world or lamp."""
         return self._compiler.owner
 
-    def problem(self, message: str) -> None:
-        """Tells the artist what is not read."""
-        self._compiler.problem(self.node.label or self.node.name, message)
+    def problem(self, message: str, lost: bool = False) -> None:
+        """Tells the artist what is not read; `lost` if it is missing from the picture."""
+        self._compiler.problem(self.node.label or self.node.name, message, lost)
 
 
 class Compiler:
@@ -107,9 +108,9 @@ class Compiler:
         self._open: set[tuple] = set()
         self._links = Links()
 
-    def problem(self, node: str, message: str) -> None:
+    def problem(self, node: str, message: str, lost: bool = False) -> None:
         """Adds a problem unless it is known."""
-        problem = Problem(self.owner.name, node, message)
+        problem = Problem(Named(self.owner), node, message, lost)
         if problem not in self.problems:
             self.problems.append(problem)
 
@@ -134,7 +135,7 @@ class Compiler:
         try:
             return source_of(frame, socket, self._links)
         except EndlessGroups as group:
-            self.problem(str(group), "This group contains itself; it is left out.")
+            self.problem(str(group), "This group contains itself; it is left out.", lost=True)
             return Source(frame, None, socket)
 
     def _value(self, source: Source, socket: Any) -> Value:
@@ -171,7 +172,7 @@ class Compiler:
         view = NodeView(self, source.frame, source.node)
         reader = VALUE_READERS.get(source.node.bl_idname)
         if reader is None:
-            view.problem(f"Opal does not read {source.node.bl_label} nodes; what it is linked to keeps its own value.")
+            view.problem(f"Opal does not read {source.node.bl_label} nodes; what it is linked to keeps its own value.", lost=True)
             return {}
         return reader(view)
 
@@ -210,7 +211,7 @@ class Compiler:
             elif reader := readers.get(source.node.bl_idname):
                 reader(view, weight)
             else:
-                view.problem(f"Opal does not read {source.node.bl_label} nodes here; {instead}.")
+                view.problem(f"Opal does not read {source.node.bl_label} nodes here; {instead}.", lost=True)
                 if not self.is_world and readers is SHADER_READERS:
                     self.builder.emit(Op.DIFFUSE, 0, weight, constant(0.8, 0.8, 0.8), ZERO, self.default_normal)
 

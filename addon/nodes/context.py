@@ -15,16 +15,19 @@ class Problem(NamedTuple):
     Attributes
     ----------
     owner : str
-        Name of the material, world or lamp.
+        Name of the material, world, lamp or image (`identity.Named`).
     node : str
         Name of the node, or empty.
     message : str
         A sentence for the artist: what is not read, and what is shown instead.
+    lost : bool
+        Whether it is missing from the picture; what is not is only shown in another way.
     """
 
     owner: str
     node: str
     message: str
+    lost: bool = False
 
 
 class NodeContext(Protocol):

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from ..identity import key_of
+from ..identity import Named, key_of
 from .context import Problem
 
 TRANSFER_LINEAR, TRANSFER_SRGB = 0, 1
@@ -45,7 +45,7 @@ class Images:
         """The number of an image; -1 where it cannot be read."""
         if image.source in _READ_AS_LOADED:
             self.any_frames = True
-            self._note(Problem(image.name, "", "Sequences and films show the frame that Blender has loaded."))
+            self._note(Problem(Named(image), "", "Sequences and films show the frame that Blender has loaded."))
         return self._number((key_of(image),), image, lambda: loaded_pixels(image))
 
     def tiles(self, image: Any) -> list[tuple[int, int]]:
@@ -67,15 +67,15 @@ class Images:
         try:
             pixels = read()
         except (OSError, RuntimeError, MemoryError, ImportError) as error:
-            self._note(Problem(image.name, "", f"The image cannot be read ({error}); it is magenta."))
+            self._note(Problem(Named(image), "", f"The image cannot be read ({error}); it is magenta.", lost=True))
             return -1
         if pixels is None:
             where = image.filepath_raw or "nowhere"
-            self._note(Problem(image.name, "", f"The image is not found at {where}; it is magenta."))
+            self._note(Problem(Named(image), "", f"The image is not found at {where}; it is magenta.", lost=True))
             return -1
         pixels, transfer, sentence = prepared(pixels, image)
         if sentence:
-            self._note(Problem(image.name, "", sentence))
+            self._note(Problem(Named(image), "", sentence))
         return self._add(pixels, transfer)
 
 

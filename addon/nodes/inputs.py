@@ -72,7 +72,7 @@ def uv_map(n: NodeView) -> dict[str, Value]:
 @reads("ShaderNodeAttribute")
 def attribute(n: NodeView) -> dict[str, Value]:
     if n.node.attribute_type != "GEOMETRY":
-        n.problem("Only attributes of the geometry are read; others are zero.")
+        n.problem("Only attributes of the geometry are read; others are zero.", lost=True)
         return dict.fromkeys(("Color", "Vector", "Fac", "Alpha"), ZERO)
     return _attribute(n, n.node.attribute_name)
 
@@ -176,7 +176,7 @@ def light_path(n: NodeView) -> dict[str, Value]:
         if socket.name not in outputs:
             outputs[socket.name] = ZERO
             if socket.is_linked:
-                n.problem(f"{socket.name} is not known to Opal; it is 0.")
+                n.problem(f"{socket.name} is not known to Opal; it is 0.", lost=True)
     return outputs
 
 

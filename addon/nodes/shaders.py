@@ -17,7 +17,7 @@ def _multiscatter(n: NodeView) -> int:
 def _no_thin_film(n: NodeView) -> None:
     thickness = n.value("Thin Film Thickness")
     if thickness.number is None or thickness.number > 0:
-        n.problem("Thin films are not shaded on this node; it is shown without.")
+        n.problem("Thin films are not shaded on this node; it is shown without.", lost=True)
 
 
 def _tangent(n: NodeView, *amounts: Value) -> Value | None:
@@ -123,7 +123,7 @@ _VOLUMES = ("Absorption", "Coefficients", "Scatter", "Principled")
 
 @shades(*(f"ShaderNodeVolume{kind}" for kind in _VOLUMES))
 def volume(n: NodeView, weight: Value) -> None:
-    n.problem("A volume shader is linked to a surface; it is left out.")
+    n.problem("A volume shader is linked to a surface; it is left out.", lost=True)
 
 
 @shades("ShaderNodeBsdfPrincipled")

@@ -67,7 +67,7 @@ def _has_own_alpha(image: object) -> bool:
 @reads("ShaderNodeTexImage")
 def image_texture(n: NodeView) -> dict[str, Value]:
     if n.node.image is None:
-        n.problem("No image is chosen; it is magenta.")
+        n.problem("No image is chosen; it is magenta.", lost=True)
         return {"Color": MAGENTA, "Alpha": ONE}
     projection = n.node.projection
     return _image(n, position(n, "UV"), projection, n.node.extension)
@@ -76,7 +76,7 @@ def image_texture(n: NodeView) -> dict[str, Value]:
 @reads("ShaderNodeTexEnvironment")
 def environment_texture(n: NodeView) -> dict[str, Value]:
     if n.node.image is None:
-        n.problem("No image is chosen; it is magenta.")
+        n.problem("No image is chosen; it is magenta.", lost=True)
         return {"Color": MAGENTA}
     return _image(n, position(n, "POSITION"), n.node.projection, "REPEAT")
 
@@ -158,7 +158,7 @@ def white_noise(n: NodeView) -> dict[str, Value]:
 @reads("ShaderNodeTexSky")
 def sky(n: NodeView) -> dict[str, Value]:
     """No sky model: a clear sky's blue, brighter towards the horizon."""
-    n.problem("Sky textures are not computed; a plain gradient of blue is shown. Use an environment image instead.")
+    n.problem("Sky textures are not computed; a plain gradient of blue is shown. Use an environment image instead.", lost=True)
     up = n.emit(Op.MAP_RANGE, 0, n.builder.component(position(n), 2), ZERO, ONE, ZERO, ONE, None, ops.RANGE_CLAMP)
     horizon, zenith = constant(0.55, 0.7, 0.95), constant(0.12, 0.25, 0.6)
     return {"Color": n.emit(Op.MIX, ops.MIX["MIX"], up, horizon, zenith, 0)}
@@ -166,5 +166,5 @@ def sky(n: NodeView) -> dict[str, Value]:
 
 @reads("ShaderNodeTexIES")
 def ies(n: NodeView) -> dict[str, Value]:
-    n.problem("IES profiles are not read; the lamp shines evenly.")
+    n.problem("IES profiles are not read; the lamp shines evenly.", lost=True)
     return {"Fac": n.builder.math("MULTIPLY", n.value("Strength"), constant(1 / (4 * math.pi)))}

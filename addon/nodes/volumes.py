@@ -257,7 +257,7 @@ def _principled(terms: _Terms, n: NodeView, weight: Value) -> None:
     if (values := grid(name, "FACTOR")) is not None:
         density = math("MULTIPLY", density, values)
     elif name and terms.grids is not None:
-        n.problem(f"There is no grid named “{name}”; where it should say the density there is nothing.")
+        n.problem(f"There is no grid named “{name}”; where it should say the density there is nothing.", lost=True)
         density = ZERO
     color = n.value("Color")
     name = _text(n, "Color Attribute")
@@ -287,7 +287,7 @@ def _principled_blackbody(terms: _Terms, n: NodeView, weight: Value) -> None:
     if settings[0].number == 0:
         return
     if any(value.constant is None for value in settings):
-        n.problem("Blackbody settings are the same everywhere but for the temperature's grid; what is linked is left out.")
+        n.problem("Blackbody settings are the same everywhere but for the temperature's grid; what is linked is left out.", lost=True)
         return
     intensity, temperature, tint, whole = settings
     name = _text(n, "Temperature Attribute")

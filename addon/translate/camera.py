@@ -10,10 +10,12 @@ from typing import Any
 from opal_kernels import camera as optics
 from opal_kernels.descriptions import Camera, CameraType
 
-Report = Callable[[str, str], None]  # (name of the object, sentence)
+from ..identity import Named
+
+Report = Callable[..., None]  # `report.Report.add`
 
 
-def _ignore(_name: str, _message: str) -> None:
+def _ignore(*_what: Any) -> None:
     pass
 
 
@@ -42,8 +44,9 @@ def _lens(camera_object: Any, scene: Any, matrix: Any, report: Report) -> tuple[
     orthographic = data.type == "ORTHO"
     if data.type not in {"PERSP", "ORTHO"}:
         report(
-            camera_object.name,
+            Named(camera_object),
             "Opal has no panoramic or custom cameras: this one is rendered as perspective",
+            "Lens Type",
         )
     window = {
         "lens": data.lens,

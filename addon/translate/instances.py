@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from ..identity import Named
 from .voxels import source_of
 
 # Ray visibility of an object: property, OPAL_RAY_* bit.
@@ -177,7 +178,7 @@ class _LayerContext:
         if not instance.is_instance and not instance.show_self:
             visibility = 0
         receivers = receiver_set(parent.original if parent is not None else original)
-        grids = source_of(obj, lambda sentence: self.problems.append((original.name, sentence)))
+        grids = source_of(obj, lambda sentence: self.problems.append((Named(original), sentence)))
         key = (
             mesh.as_pointer(),
             tuple(m.as_pointer() if m else 0 for m in materials),
@@ -188,7 +189,7 @@ class _LayerContext:
         )
         return _Look(
             key=key,
-            name=original.name,
+            name=Named(original),
             mesh=mesh,
             materials=materials,
             visibility=visibility,
@@ -224,7 +225,7 @@ _UNREADABLE = {
 
 def _note_unreadable(obj: Any, kind: str, problems: list[tuple[str, str]]) -> None:
     if (sentence := _UNREADABLE.get(kind)) and (obj.name, sentence) not in problems:
-        problems.append((obj.name, sentence))
+        problems.append((Named(obj), sentence))
 
 
 def _note_singular(look_rows: np.ndarray, used: np.ndarray, looks: list[_Look], problems: list[tuple[str, str]]) -> None:

@@ -8,13 +8,15 @@ from typing import Any
 
 from opal_kernels.descriptions import Light, LightType, Ray
 
-Report = Callable[[str, str], None]  # (name of the object, sentence)
+from ..identity import Named
+
+Report = Callable[..., None]  # `report.Report.add`
 
 MOST_LINK_SETS = 64  # bits of opal_light_desc.receivers
 EVERYTHING = (1 << MOST_LINK_SETS) - 1
 
 
-def _ignore(_name: str, _message: str) -> None:
+def _ignore(*_what: Any) -> None:
     pass
 
 
@@ -115,7 +117,7 @@ def node_factor(data: Any, context: Any, report: Report) -> tuple[float, float, 
 
     factor, problems = compile_light_nodes(data, context)
     for problem in problems:
-        report(data.name, problem.message)
+        report(Named(data), problem.message, f"node “{problem.node}”" if problem.node else "", problem.lost)
     return tuple(factor)
 
 
@@ -153,14 +155,14 @@ def light_from_object(
     data = obj.data
     reader = READERS.get(data.type)
     if reader is None:
-        report(obj.name, f"Opal has no lamps of type {data.type}")
+        report(Named(obj), f"Opal has no lamps of type {data.type}: it is left out", "Type", True)
         return None
     settings = getattr(data, "cycles", None)
     if data.type == "AREA" and getattr(settings, "is_portal", False):
         return None
     linking = getattr(obj, "light_linking", None)
     if linking is not None and linking.blocker_collection is not None:
-        report(obj.name, "Opal has no shadow linking: everything casts this lamp's shadow")
+        report(Named(obj), "Opal has no shadow linking: everything casts this lamp's shadow", "Shadow Linking")
     factor = node_factor(data, context, report)
     color = tuple(c * f for c, f in zip(lamp_color(data), factor, strict=True))
     power = data.energy * 2.0 ** getattr(data, "exposure", 0.0)
@@ -212,8 +214,9 @@ class LightLinks:
         lit = tuple(lights(_identity(obj)) for lights in self._rules.values())
         if lit not in self._sets and len(self._sets) == MOST_LINK_SETS:
             self._report(
-                obj.name,
+                Named(obj),
                 f"More than {MOST_LINK_SETS} combinations of light links: every lamp lights this object",
+                "Light Linking",
             )
             return -1
         return self._sets.setdefault(lit, len(self._sets))

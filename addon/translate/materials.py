@@ -13,7 +13,7 @@ from opal_kernels.optics import species
 from opal_kernels.scene import Scene
 
 from .. import presets
-from ..identity import key_of
+from ..identity import Named, key_of
 from ..nodes import compile_material, compile_missing, compile_volume, default_volume, has_surface, has_volume
 from ..report import Report
 from . import rainbow
@@ -116,7 +116,7 @@ class Materials:
                 raise NeedsRebuild
             if old.kind == "GEM" and _gem_content(material.opal.gem, _gem_tables(material.opal.gem, self._absorption_scale)) == old.content:
                 continue
-            self._report.forget(material.name)
+            self._report.forget(Named(material))
             new = _Known(old.number, old.kind)
             description = self._describe(material, None, new)
             if new.content != old.content:
@@ -134,14 +134,14 @@ class Materials:
             return self._default_volume(body) if is_volume else self._program(compile_missing(self._context), known)
         settings = material.opal
         if body is not None and not body.closed:
-            self._report.add(body.name, "The mesh is open, so it cannot hold a medium; only its surface is rendered.")
+            self._report.add(body.name, "The mesh is open, so it cannot hold a medium; only its surface is rendered.", lost=True)
             body = None
             if settings.kind != "GEM":
                 return self._program(compile_material(material, self._context), known)
         if settings.kind == "GEM":
-            return self._gem(material.name, settings, body, known)
+            return self._gem(Named(material), settings, body, known)
         if settings.kind in {"MEDIUM", "RAINBOW"}:
-            return self._filling(material.name, settings, body or Body(material.name))
+            return self._filling(Named(material), settings, body or Body(material.name))
         medium = self._volume_nodes(material, body) if body is not None else -1
         if is_volume or (medium >= 0 and not has_surface(material)):
             return {"flags": MaterialFlag.NO_SURFACE, "medium": medium}
@@ -178,7 +178,7 @@ class Materials:
             else:
                 medium = self._rain.add(settings.rainbow)
         except ValueError as error:
-            self._report.add(name, f"{error} The body is rendered empty.")
+            self._report.add(name, f"{error} The body is rendered empty.", lost=True)
             medium = -1
         return {"flags": MaterialFlag.NO_SURFACE, "medium": medium}
 

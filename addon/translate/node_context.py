@@ -77,8 +77,7 @@ class NodeContext:
     def note(self, problems: Iterable[Any]) -> None:
         """Puts what a node reader could not keep into the report."""
         for problem in problems:
-            node = f"node “{problem.node}”: " if problem.node else ""
-            self._report.add(problem.owner, node + problem.message)
+            self._report.add(problem.owner, problem.message, f"node “{problem.node}”" if problem.node else "", problem.lost)
 
     def program_compiled(self, code: np.ndarray) -> None:
         """Remembers what a program reads from meshes."""

@@ -13,6 +13,7 @@ from opal_kernels.optics.rainbow import sight
 from opal_kernels.scene import Scene
 
 from .. import rainbow_tables
+from ..identity import Named
 from ..report import Report
 
 # Height over which rain thins out where the world does not say: of the order of a shower cloud's base.
@@ -93,7 +94,9 @@ class Rain:
         if not height > 0.0:
             height = RAIN_HEIGHT
             self._report.add(
-                world.name, f"Rain without a scale height would let no sun through: it is rendered with one of {RAIN_HEIGHT:g} m."
+                Named(world),
+                f"Rain without a scale height would let no sun through: it is rendered with one of {RAIN_HEIGHT:g} m.",
+                "Scale Height",
             )
         drops, phase = self.phase(settings.rainbow)
         medium = self._scene.add_medium(

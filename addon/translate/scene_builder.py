@@ -15,6 +15,7 @@ import numpy as np
 from opal_kernels.descriptions import Attribute, Camera, Light, World
 from opal_kernels.scene import Scene
 
+from ..identity import Named
 from ..report import Report
 from .gem_meshes import mend_gem_mesh
 from .instances import Group, Visible, collect
@@ -107,7 +108,7 @@ class SceneBuilder:
             snapshot.bodies.append(body)
 
         for name, sentence in visible.problems:  # grids have been read by now
-            self._report.add(name, sentence)
+            self._report.add(name, sentence, lost=True)
 
         needs = self.context.mesh_needs()
         for count, group in enumerate(visible.groups):
@@ -135,9 +136,9 @@ class SceneBuilder:
         def on_light(obj: Any, matrix: np.ndarray) -> None:
             light = light_from_object(obj, matrix=matrix, context=self.context, report=self._report.add, add_spectrum=take_spectrum)
             if sentence := out_of_range(obj.data, *depsgraph.scene_eval.opal.wavelengths):
-                self._report.add(obj.original.name, sentence)
+                self._report.add(Named(obj), sentence, "Spectrum", lost=True)
             if light is not None:
-                snapshot.lights.append((light, obj.original.name_full))
+                snapshot.lights.append((light, Named(obj)))
                 originals.append(obj.original)
 
         visible = collect(depsgraph, on_light, links.group)
@@ -173,7 +174,7 @@ class SceneBuilder:
         try:
             self.scene.set_world_medium(self.rain.add_world(world))
         except ValueError as error:
-            self._report.add(world.name, f"{error} The world is rendered empty.")
+            self._report.add(Named(world), f"{error} The world is rendered empty.", lost=True)
 
     def _read_mesh(self, group: Group, needs: MeshNeeds, snapshot: Snapshot, body: Body | None) -> int:
         key = group.mesh.as_pointer()
@@ -183,7 +184,7 @@ class SceneBuilder:
         elif key not in snapshot.meshes:
             arrays = snapshot.meshes[key] = read_mesh(group.mesh, needs)
             for sentence in arrays.problems if arrays is not None else ():
-                self._report.add(group.name, sentence)
+                self._report.add(group.name, sentence, lost=True)
             if arrays is not None and (gems := [m for m in group.materials if m is not None and m.opal.kind == "GEM"]):
                 for sentence in mend_gem_mesh(arrays, only_gems=len(gems) == len(group.materials)):
                     self._report.add(group.name, sentence)
@@ -252,7 +253,7 @@ class SceneBuilder:
             attributes=[Attribute(*attribute) for attribute in arrays.attributes],
         )
         if dropped:
-            self._report.add(name, f"{dropped} triangles have corners that are not finite and are left out")
+            self._report.add(name, f"{dropped} triangles have corners that are not finite and are left out", lost=True)
         return number
 
     def add_lights(self, lights: Iterable[tuple[Light, str]]) -> None:
@@ -263,7 +264,7 @@ class SceneBuilder:
             try:
                 self.scene.add_light(light)
             except binding.OpalError as error:
-                self._report.add(name, f"the lamp is left out: {error}")
+                self._report.add(name, f"the lamp is left out: {error}", lost=True)
 
 
 def world_of(depsgraph: Any) -> Any:

@@ -8,6 +8,8 @@ from typing import Any
 
 from opal_kernels.descriptions import Program, Ray, World
 
+from ..identity import Named
+
 SMALLEST_MAP, USUAL_MAP, LARGEST_MAP = 256, 1024, 2048  # pixels across
 
 
@@ -75,7 +77,9 @@ def add_world_medium(world: Any, scene: Any, context: Any, volumes: Any, report:
         if settings.scale_height > 0.0:
             fields = {"density": Density.HEIGHT, "scale_height": settings.scale_height, "base_height": settings.base_height}
             if settings.medium.density != "HOMOGENEOUS":
-                report.add(world.name, "A world's medium thins with height or varies by noise, not both; it thins with height.")
+                report.add(
+                    Named(world), "A world's medium thins with height or varies by noise, not both; it thins with height.", "Density"
+                )
         medium = volumes.add_medium(settings.medium, body, **fields)
         endless = settings.scale_height == 0.0 and settings.medium.extinction > 0.0
     else:
@@ -84,7 +88,12 @@ def add_world_medium(world: Any, scene: Any, context: Any, volumes: Any, report:
             return
         context.note(compiled.problems)
         if any(c.program is not None for c in (compiled.scattering, compiled.absorption, compiled.emission)):
-            report.add(world.name, "The world's volume is the same everywhere in Opal; what varies from place to place is left out.")
+            report.add(
+                Named(world),
+                "The world's volume is the same everywhere in Opal; what varies from place to place is left out.",
+                "Volume",
+                lost=True,
+            )
             for kind in ("scattering", "absorption", "emission"):
                 if getattr(compiled, kind).program is not None:
                     setattr(compiled, kind, type(compiled.scattering)())
@@ -95,8 +104,9 @@ def add_world_medium(world: Any, scene: Any, context: Any, volumes: Any, report:
     scene.set_world_medium(medium)
     if endless:
         report.add(
-            world.name,
+            Named(world),
             "The medium has no end, so neither the sun nor the sky shines through it; give it a scale height, or put it in a closed mesh.",
+            "Scale Height",
         )
 
 
