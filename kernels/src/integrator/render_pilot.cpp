@@ -10,7 +10,7 @@
 namespace opal {
 namespace {
 
-constexpr uint32_t kPilotPhotons = 1u << 16;
+constexpr uint32_t kPilotPhotons = 1u << 15;
 // The pilot's camera paths are counted from here, far above those of any pass.
 constexpr uint32_t kPilotSample = 0x80000000u;
 
