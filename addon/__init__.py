@@ -15,6 +15,7 @@ from . import (
     rainbow_panels,
     report,
     report_list,
+    translations,
     versions,
 )
 
@@ -30,6 +31,7 @@ _MODULES = (
     report_list,
     blender_panels,
     versions,
+    translations,
 )
 
 

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Other languages, the way extensions give them to Blender: a dictionary by language of (context, English) to text.
+
+A language is a module of this folder with `LABELS`, `TOOLTIPS` and `OPERATORS`, named in `DICTIONARY`.
+"""
+
+from __future__ import annotations
+
+import bpy
+
+from . import translations_german as german
+
+_NONE, _OPERATOR = "*", "Operator"
+DICTIONARY: dict[str, dict[tuple[str, str], str]] = {
+    "de_DE": {(_NONE, english): text for english, text in (german.LABELS | german.TOOLTIPS).items()}
+    | {(_OPERATOR, english): text for english, text in german.OPERATORS.items()},
+}
+
+
+def register() -> None:
+    bpy.app.translations.register(__package__, DICTIONARY)
+
+
+def unregister() -> None:
+    bpy.app.translations.unregister(__package__)
