@@ -227,7 +227,7 @@ def _height(plan: Plan, height: float, base: float) -> tuple[str, int]:
 
 
 def noise_offset(seed: int) -> tuple[float, float, float]:
-    """Where in the noise a seed looks, in units of its largest lumps: as the kernels shift it (`medium_from` in api.cpp)."""
+    """Where in the noise a seed looks, in units of its largest lumps: as the kernels shift it (`medium_from` in api/media.cpp)."""
     return tuple((_hash32(seed, axis) & 0xFFFF) / 16.0 - 2048.0 for axis in (1, 2, 3))
 
 
