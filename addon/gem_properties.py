@@ -45,8 +45,8 @@ class OpalGemProperties(bpy.types.PropertyGroup):
         name="Dispersion",
         description="Formula of the index of refraction against wavelength",
         items=(
-            ("CAUCHY", "Cauchy", "n = B + C / λ²: enough for most stones"),
-            ("SELLMEIER", "Sellmeier", "n² = 1 + Σ B λ² / (λ² - C): what glass makers and tables give"),
+            ("CAUCHY", "Cauchy", "Cauchy's n = B + C / λ²: enough for most stones"),
+            ("SELLMEIER", "Sellmeier", "Sellmeier's n² = 1 + Σ B λ² / (λ² - C): what glass makers and tables give"),
         ),
         default="SELLMEIER",
         update=presets.on_index,
@@ -92,7 +92,7 @@ class OpalGemProperties(bpy.types.PropertyGroup):
         name="Fresnel",
         description="How much the boundary reflects",
         items=(
-            ("EXACT", "Exact", "Fresnel's equations"),
+            ("EXACT", "Exact", "Fresnel's equations as they are, at every angle and wavelength"),
             ("SCHLICK", "Schlick", "Schlick's approximation, taken on the side of the lower index"),
         ),
         default="EXACT",

@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 
-from . import curve_icons, presets
+from . import curve_icons, preset_panels, presets
 from .panels import OpalPanel
 
 
@@ -23,6 +23,9 @@ class _MaterialPanel(OpalPanel):
 
 class OPAL_MATERIAL_PT_kind(_MaterialPanel):
     bl_label = "Opal"
+
+    def draw_header_preset(self, _context: Any) -> None:
+        preset_panels.OPAL_PT_material_presets.button(self.layout)
 
     def draw(self, context: Any) -> None:
         self.layout.prop(context.material.opal, "kind", expand=True)
@@ -70,6 +73,7 @@ class OPAL_MATERIAL_PT_gem(_MaterialPanel):
 class OPAL_MATERIAL_PT_gem_dispersion(_MaterialPanel):
     bl_label = "Dispersion"
     bl_parent_id = "OPAL_MATERIAL_PT_gem"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Any) -> None:
         layout = self.layout
@@ -88,6 +92,7 @@ class OPAL_MATERIAL_PT_gem_dispersion(_MaterialPanel):
 class OPAL_MATERIAL_PT_gem_absorption(_MaterialPanel):
     bl_label = "Absorption"
     bl_parent_id = "OPAL_MATERIAL_PT_gem"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Any) -> None:
         layout = self.layout

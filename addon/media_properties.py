@@ -107,7 +107,7 @@ class OpalMediumProperties(bpy.types.PropertyGroup):
         name="Emission",
         description="What the medium's own light looks like",
         items=(
-            ("COLOR", "Color", "A colour"),
+            ("COLOR", "Color", "A colour of the artist's choice"),
             ("BLACKBODY", "Blackbody", "The light of a glowing body of some temperature"),
         ),
         default="COLOR",

@@ -7,6 +7,8 @@ from typing import Any
 
 import bpy
 
+from . import preset_panels
+
 
 class OpalPanel(bpy.types.Panel):
     """Shown while Opal is the engine."""
@@ -22,6 +24,7 @@ class OpalPanel(bpy.types.Panel):
 
 class _RenderPanel(OpalPanel):
     bl_context = "render"
+    bl_order = -10  # above those that Blender shares with every engine, such as Simplify
 
     def draw(self, context: Any) -> None:
         layout = self.layout
@@ -35,6 +38,9 @@ class _RenderPanel(OpalPanel):
 
 class OPAL_RENDER_PT_sampling(_RenderPanel):
     bl_label = "Sampling"
+
+    def draw_header_preset(self, _context: Any) -> None:
+        preset_panels.OPAL_PT_render_presets.button(self.layout)
 
     def draw_settings(self, layout: Any, opal: Any, context: Any) -> None:
         column = layout.column(align=True)
@@ -82,6 +88,7 @@ class OPAL_RENDER_PT_photons(_RenderPanel):
 class OPAL_RENDER_PT_volume_photons(_RenderPanel):
     bl_label = "Media"
     bl_parent_id = "OPAL_RENDER_PT_photons"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw_settings(self, layout: Any, opal: Any, context: Any) -> None:
         layout.active = opal.photons_per_pass > 0

@@ -97,7 +97,7 @@ class OPAL_RENDER_PT_report(OpalPanel):
 
     bl_label = "Report"
     bl_context = "render"
-    bl_order = 90
+    bl_order = -5  # after the settings
 
     @classmethod
     def poll(cls, context: Any) -> bool:

@@ -30,6 +30,8 @@ LABELS = {
     "Rainbow": "Regenbogen",
     "Ray Visibility": "Strahlensichtbarkeit",
     "Report": "Bericht",
+    "Render Presets": "Rendervorgaben",
+    "Material Presets": "Materialvorgaben",
     "Sampling": "Abtastung",
     "Spectral EXR": "Spektrales EXR",
     "Spectrum": "Spektrum",
@@ -373,6 +375,10 @@ TOOLTIPS = {
 }
 
 OPERATORS = {
+    "Add Render Preset": "Rendervorgabe hinzufügen",
+    "Apply Material Preset": "Materialvorgabe anwenden",
+    "Apply Render Preset": "Rendervorgabe anwenden",
+    "Remove Render Preset": "Rendervorgabe entfernen",
     "Compare with Cycles": "Mit Cycles vergleichen",
     "Composite over Cycles": "Über Cycles zusammensetzen",
     "Gem": "Edelstein",

@@ -13,6 +13,7 @@ from . import (
     import_gemcad,
     merge,
     panels,
+    presets,
     rainbow_chart,
     render_layers,
     select_reported,
@@ -31,6 +32,7 @@ _MODULES = (
     compare_cycles,
     merge,
     select_reported,
+    presets,
     update_twins,
     panels,
 )

@@ -19,7 +19,7 @@ class OPAL_OT_compare_cycles(bpy.types.Operator):
     bl_description = (
         "Render this frame by both engines with the same camera and light, Opal's materials by their twins, and measure the difference"
     )
-    bl_options = {"REGISTER"}
+    bl_options = {"REGISTER", "UNDO"}
 
     mode: EnumProperty(
         name="Compare",

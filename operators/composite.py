@@ -14,7 +14,7 @@ class OPAL_OT_composite(bpy.types.Operator, WritesFile):
     bl_idname = "opal.composite"
     bl_label = "Composite over Cycles"
     bl_description = "Render this frame by Cycles without caustics and without what Opal renders better, and lay Opal's layers over it"
-    bl_options = {"REGISTER"}
+    bl_options = {"REGISTER", "UNDO"}
 
     layers: EnumProperty(
         name="Layers",

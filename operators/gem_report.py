@@ -24,7 +24,7 @@ class OPAL_OT_gem_report(bpy.types.Operator):
         "Render the active stone face-up under a bright hemisphere with the shadow of the observer's head, and measure its light return, "
         "fire, leakage and tilt curve; the stone looks up along its own Z axis"
     )
-    bl_options = {"REGISTER"}
+    bl_options = {"REGISTER", "UNDO"}
 
     filepath: StringProperty(
         name="File",

@@ -19,7 +19,7 @@ class OPAL_OT_merge(bpy.types.Operator, ImportHelper):
     bl_idname = "opal.merge"
     bl_label = "Merge Films"
     bl_description = "Merge films of different passes of the same picture: passes 1 to 8 and 9 to 16 make the picture of 1 to 16, exactly"
-    bl_options = {"REGISTER"}
+    bl_options = {"REGISTER", "UNDO"}
 
     filename_ext = ".npz"
     filter_glob: StringProperty(default="*.npz", options={"HIDDEN"})

@@ -22,7 +22,7 @@ class OPAL_OT_rainbow_chart(bpy.types.Operator):
         "Draw the bows of all five theories without a scene: strips and Lee diagrams in true colour, curves of luminance and polarisation, "
         "and the errors against Lorenz-Mie theory in numbers"
     )
-    bl_options = {"REGISTER"}
+    bl_options = {"REGISTER", "UNDO"}
 
     filepath: StringProperty(
         name="File",

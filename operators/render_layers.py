@@ -51,7 +51,7 @@ class OPAL_OT_render_layers(bpy.types.Operator, WritesFile):
     bl_idname = "opal.render_layers"
     bl_label = "Render Layers"
     bl_description = "Render Opal's layers of this frame into images, to be laid over a picture by another engine"
-    bl_options = {"REGISTER"}
+    bl_options = {"REGISTER", "UNDO"}
 
     layers: EnumProperty(
         name="Layers",

@@ -57,20 +57,198 @@ def test_public_names_exist():
     assert set(GEM_NAMES) <= set(material.opal.gem.bl_rna.properties.keys())
 
 
-@pytest.mark.parametrize("group", ["scene", "view_layer", "material", "gem"])
-def test_every_setting_says_in_a_sentence_what_it_does(group):
-    material = bpy.data.materials.new("Any")
-    owner = {
+def groups():
+    """Every group of settings by the data path to it."""
+    world, camera = bpy.data.worlds.new("Any"), bpy.data.cameras.new("Any")
+    light, material = bpy.data.lights.new("Any", "POINT"), bpy.data.materials.new("Any")
+    return {
         "scene": bpy.context.scene.opal,
         "view_layer": bpy.context.view_layer.opal,
         "material": material.opal,
         "gem": material.opal.gem,
-    }[group]
-    for prop in owner.bl_rna.properties:
-        if prop.identifier in {"rna_type", "name"} or prop.is_hidden or prop.type == "POINTER":
-            continue
-        assert len(prop.description) >= 20 and prop.description[0].isupper(), prop.identifier
-        assert not prop.description.endswith("."), "Blender adds the full stop"
+        "medium": material.opal.medium,
+        "rainbow": material.opal.rainbow,
+        "world": world.opal,
+        "light": light.opal,
+        "camera": camera.opal,
+    }
+
+
+GROUPS = ("scene", "view_layer", "material", "gem", "medium", "rainbow", "world", "light", "camera")
+OPERATORS = (
+    "add_gem add_rain apply_preset compare_cycles composite gem_report import_absorption import_gemcad merge rainbow_chart render_layers "
+    "render_preset_add render_preset_apply render_preset_remove select_reported update_twins"
+).split()
+
+
+def said(prop, inherited=()):
+    """Whether a property is Opal's own and shown."""
+    return prop.identifier not in {"rna_type", "name", *inherited} and not prop.is_hidden and prop.type != "POINTER"
+
+
+def is_a_sentence(text, words=3):
+    return len(text.split()) >= words and text[0] == text[0].upper() and not text.endswith(".")  # Blender adds the full stop
+
+
+@pytest.mark.parametrize("group", GROUPS)
+def test_every_setting_and_every_choice_says_in_a_sentence_what_it_does(group):
+    rna = groups()[group].bl_rna
+    unsaid = [p.identifier for p in rna.properties if said(p) and not (is_a_sentence(p.description) and len(p.description) >= 20)]
+    unsaid += [
+        f"{p.identifier}: {item.identifier}"
+        for p in rna.properties
+        if said(p) and p.type == "ENUM"
+        for item in p.enum_items
+        if not is_a_sentence(item.description)
+    ]
+    assert not unsaid
+
+
+def test_these_are_opals_operators():
+    assert sorted(dir(bpy.ops.opal)) == sorted(OPERATORS)
+
+
+@pytest.mark.parametrize("name", OPERATORS)
+def test_every_operator_and_its_choices_say_in_a_sentence_what_they_do_and_are_found_by_search(name):
+    rna = getattr(bpy.ops.opal, name).get_rna_type()
+    assert is_a_sentence(rna.description, 5) and rna.name[0].isupper()
+    # What Blender's own helpers bring along: the file browser and the alignment of added objects.
+    inherited = {"filepath", "filter_glob", "files", "directory", "align", "location", "rotation"}
+    unsaid = [p.identifier for p in rna.properties if said(p, inherited) and not is_a_sentence(p.description, 2)]
+    unsaid += [
+        f"{p.identifier}: {item.identifier}"
+        for p in rna.properties
+        if said(p, inherited) and p.type == "ENUM"
+        for item in p.enum_items
+        if not is_a_sentence(item.description, 2)
+    ]
+    assert not unsaid
+    # Blender's search leaves out what is internal.
+    assert "INTERNAL" not in getattr(bpy.types, f"OPAL_OT_{name}").bl_options or name.startswith(("render_preset_", "apply_preset"))
+
+
+def test_sub_panels_are_closed_and_sampling_comes_first():
+    panels = [getattr(bpy.types, name) for name in dir(bpy.types) if name.startswith("OPAL_") and "_PT_" in name]
+    panels = [p for p in panels if p.bl_region_type == "WINDOW" and "INSTANCED" not in getattr(p, "bl_options", ())]
+    open_ones = [p.__name__ for p in panels if getattr(p, "bl_parent_id", "") and "DEFAULT_CLOSED" not in p.bl_options]
+    assert not open_ones
+    order = {p.__name__: getattr(p, "bl_order", 0) for p in panels if getattr(p, "bl_context", "") == "render"}
+    assert order["OPAL_RENDER_PT_sampling"] == min(order.values()) < getattr(bpy.types.RENDER_PT_simplify, "bl_order", 0)
+
+
+@pytest.mark.parametrize(
+    "group, name, values",
+    [
+        ("scene", "film_exposure", (0.5, 2.0)),
+        ("scene", "max_depth", (2, 40)),
+        ("scene", "volume_estimate", ("POINTS", "BEAMS")),
+        ("gem", "roughness", (0.0, 0.5)),
+        ("gem", "absorption_depth", (0.001, 0.02)),
+        ("gem", "cauchy_b", (1.5, 2.0)),
+        ("medium", "extinction", (0.1, 3.0)),
+        ("medium", "anisotropy", (-0.5, 0.5)),
+        ("rainbow", "radius", (0.1, 1.0)),
+        ("rainbow", "flattening", (0.0, 1.0)),
+        ("world", "scale_height", (0.0, 500.0)),
+        ("light", "temperature", (2000.0, 6000.0)),
+        ("camera", "polarizer_angle", (0.0, 1.5)),
+    ],
+)
+def test_settings_are_keyed_and_frames_show_what_was_keyed(group, name, values):
+    owner = groups()[group]
+    for frame, value in zip((1, 11), values, strict=True):
+        setattr(owner, name, value)
+        assert owner.keyframe_insert(name, frame=frame)
+    for frame, value in zip((1, 11), values, strict=True):
+        bpy.context.scene.frame_set(frame)
+        if group == "scene":
+            assert getattr(owner, name) == (value if isinstance(value, str) else pytest.approx(value))
+        else:
+            assert _curves(owner.id_data)[name].evaluate(frame) == pytest.approx(value)
+
+
+def _curves(block):
+    """Curves of a block's animated settings by name."""
+    action = block.animation_data.action
+    curves = getattr(action, "fcurves", None)
+    if curves is None:  # since Blender 5 curves lie in layers
+        curves = [c for layer in action.layers for strip in layer.strips for bag in strip.channelbags for c in bag.fcurves]
+    return {curve.data_path.rpartition(".")[2]: curve for curve in curves}
+
+
+def test_everything_but_file_names_can_be_animated():
+    still = {
+        f"{group}.{prop.identifier}"
+        for group, owner in groups().items()
+        for prop in owner.bl_rna.properties
+        if said(prop) and prop.type in {"FLOAT", "INT", "BOOLEAN", "ENUM"} and not prop.is_animatable
+    }
+    assert not still
+
+
+def test_a_driver_reaches_the_render(tmp_path):
+    """The exposure follows the camera's lens: what is rendered is what was driven."""
+    scene = stage.scene()
+    camera = stage.camera((0, 0, 5), lens=50)
+    stage.plane(size=20, material=stage.glowing(strength=1.0))
+    curve = scene.opal.driver_add("film_exposure")
+    variable = curve.driver.variables.new()
+    variable.name, variable.type = "lens", "SINGLE_PROP"
+    variable.targets[0].id_type, variable.targets[0].id, variable.targets[0].data_path = "CAMERA", camera.data, "lens"
+    curve.driver.expression = "lens / 25"
+    bpy.context.view_layer.update()
+    assert stage.render(tmp_path)[..., :3].mean() == pytest.approx(2.0, rel=0.01)
+
+
+# ---- Undo ----
+
+
+def undone(operator, **settings):
+    """Runs an operator as a person does, with a step of undo after it, and undoes that step."""
+    bpy.ops.ed.undo_push(message="before")
+    assert operator("EXEC_DEFAULT", True, **settings) == {"FINISHED"}
+    done = names()
+    bpy.ops.ed.undo()
+    return done, names()
+
+
+def names():
+    return {
+        kind: sorted(block.name for block in getattr(bpy.data, kind))
+        for kind in ("objects", "meshes", "materials", "images", "texts", "node_groups")
+    }
+
+
+def test_adding_a_stone_and_rain_is_undone():
+    before = names()
+    for operator in (bpy.ops.opal.add_gem, bpy.ops.opal.add_rain):
+        done, after = undone(operator)
+        assert done["objects"] and done["materials"] and after == before
+
+
+def test_layers_a_comparison_and_a_composite_are_undone():
+    stage.scene(width=8, height=6, passes=1, samples=1)
+    stage.camera((0, 0, 5))
+    stage.plane(size=20, material=stage.glowing())
+    before = names()
+    for operator in (bpy.ops.opal.render_layers, bpy.ops.opal.compare_cycles, bpy.ops.opal.composite):
+        done, after = undone(operator)
+        assert done["images"] != before["images"] and after["images"] == before["images"]
+        assert after["node_groups"] == before["node_groups"]
+        assert bpy.context.scene.render.engine == "OPAL" and bpy.context.scene.get("opal_comparison") is None
+
+
+def test_a_species_that_was_chosen_is_undone_with_its_numbers_and_its_twin():
+    material = bpy.data.materials.new("Stone")
+    material.use_fake_user = True
+    material.opal.kind = "GEM"
+    bpy.ops.ed.undo_push(message="diamond")
+    before = tuple(material.opal.gem.sellmeier_b), material.opal.gem.species
+    material.opal.gem.species = "RUBY"
+    bpy.ops.ed.undo_push(message="ruby")
+    bpy.ops.ed.undo()
+    gem = bpy.data.materials["Stone"].opal.gem
+    assert (tuple(gem.sellmeier_b), gem.species) == before
 
 
 def test_lengths_and_times_have_blenders_units():
