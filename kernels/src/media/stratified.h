@@ -27,8 +27,8 @@ class HeightProfile {
   float reach_above(float x, float depth) const;      // the inverse
   float crossing() const { return -start_ / rise_; }  // distance to the base's height
 
-  float scale_ = 0, start_ = 0,
-        rise_ = 0;  // scale height; height over the base at the origin and its change a metre, in scales
+  float scale_ = 0;             // scale height; 0: the density is 1 everywhere
+  float start_ = 0, rise_ = 0;  // height over the base at the origin, and its change a metre, in scale heights
 };
 
 class StratifiedMedia {
