@@ -17,6 +17,7 @@ from . import (
     report,
     report_list,
     translations,
+    undo_steps,
     versions,
 )
 
@@ -26,12 +27,13 @@ _MODULES = (
     engine,
     preset_panels,
     panels,
+    report_list,
     material_panels,
     media_panels,
     rainbow_panels,
     light_panels,
-    report_list,
     blender_panels,
+    undo_steps,
     versions,
     translations,
 )

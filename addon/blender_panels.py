@@ -17,6 +17,10 @@ _LEFT_OUT = {
     "DATA_PT_preview",
     "NODE_DATA_PT_light",
     "RENDER_PT_gpencil",
+    "RENDER_PT_simplify",
+    "RENDER_PT_simplify_greasepencil",
+    "RENDER_PT_simplify_render",
+    "RENDER_PT_simplify_viewport",
     "RENDER_PT_stereoscopy",
 }
 

@@ -15,7 +15,7 @@ def draw_medium(layout: Any, medium: Any, grids: bool = True) -> None:
     layout.prop(medium, "preset")
     column = layout.column()
     column.prop(medium, "extinction", text="Extinction (1/m)")
-    column.prop(medium, "extinction_color", text="by Color")
+    column.prop(medium, "extinction_color", text="Color")
     column.prop(medium, "albedo")
     column = layout.column()
     column.prop(medium, "phase", text="Phase")
@@ -33,7 +33,7 @@ def draw_medium(layout: Any, medium: Any, grids: bool = True) -> None:
     column.prop(medium, "emission_strength", text="Emission (1/m)")
     column = column.column()
     column.active = medium.emission_strength > 0.0
-    column.prop(medium, "emission_source", text="of")
+    column.prop(medium, "emission_source", text="Source")
     column.prop(medium, "emission_temperature" if medium.emission_source == "BLACKBODY" else "emission_color")
     if grids:
         column.prop(medium, "emission_grid")

@@ -24,7 +24,6 @@ class OpalPanel(bpy.types.Panel):
 
 class _RenderPanel(OpalPanel):
     bl_context = "render"
-    bl_order = -10  # above those that Blender shares with every engine, such as Simplify
 
     def draw(self, context: Any) -> None:
         layout = self.layout
@@ -139,6 +138,27 @@ class OPAL_RENDER_PT_spectral_output(_RenderPanel):
         layout.prop(opal, "spectral_bins")
 
 
+class OPAL_RENDER_PT_simplify(_RenderPanel):
+    """Blender's own stands where it was created last, above everything of an engine's: so Opal has one, as Cycles has."""
+
+    bl_label = "Simplify"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context: Any) -> None:
+        self.layout.prop(context.scene.render, "use_simplify", text="")
+
+    def draw_settings(self, layout: Any, opal: Any, context: Any) -> None:
+        render = context.scene.render
+        layout.active = render.use_simplify
+        column = layout.column(align=True)
+        column.prop(render, "simplify_subdivision", text="Max Subdivision Viewport")
+        column.prop(render, "simplify_subdivision_render", text="Render")
+        column = layout.column(align=True)
+        column.prop(render, "simplify_child_particles", text="Max Child Particles Viewport")
+        column.prop(render, "simplify_child_particles_render", text="Render")
+        layout.prop(render, "simplify_volumes", text="Volume Resolution")
+
+
 class OPAL_RENDER_PT_film(_RenderPanel):
     bl_label = "Film"
     bl_options = {"DEFAULT_CLOSED"}
@@ -216,6 +236,7 @@ class OPAL_LIGHT_PT_spread(OpalPanel):
 class OPAL_LIGHT_PT_nodes(OpalPanel):
     bl_label = "Nodes"
     bl_context = "data"
+    bl_order = 10  # below the spectrum
     bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
@@ -259,6 +280,7 @@ CLASSES = (
     OPAL_RENDER_PT_light_paths,
     OPAL_RENDER_PT_spectrum,
     OPAL_RENDER_PT_spectral_output,
+    OPAL_RENDER_PT_simplify,
     OPAL_RENDER_PT_film,
     OPAL_RENDER_PT_motion_blur,
     OPAL_RENDER_PT_performance,

@@ -47,6 +47,7 @@ class OPAL_UL_report(bpy.types.UIList):
     def draw_item(self, _context: Any, layout: Any, _data: Any, item: Any, _icon: int, _active: Any, _name: str, index: int) -> None:
         split = layout.split(factor=0.38)
         row = split.row(align=True)
+        row.alignment = "LEFT"
         row.label(text="", icon=LOST_ICON if item.lost else CHANGED_ICON)
         if item.owner:
             button = row.operator(
@@ -97,7 +98,6 @@ class OPAL_RENDER_PT_report(OpalPanel):
 
     bl_label = "Report"
     bl_context = "render"
-    bl_order = -5  # after the settings
 
     @classmethod
     def poll(cls, context: Any) -> bool:

@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import os
+import traceback
 import weakref
 from dataclasses import replace
 from typing import Any
@@ -16,7 +17,7 @@ import numpy as np
 from gpu_extras.presets import draw_texture_2d
 from opal_kernels.binding import OpalError
 
-from . import report, settings
+from . import report, settings, undo_steps
 from .translate.camera import camera_from_view
 from .viewport_sync import SceneSync
 from .viewport_worker import Pace, Worker
@@ -38,6 +39,7 @@ class Viewport:
         self._pace = Pace()
         self._shown: tuple[Any, ...] | None = None
         self._failure = ""
+        self._undo_steps = undo_steps.count
         self._texture: Any = None
         self._texture_of: np.ndarray | None = None
 
@@ -48,21 +50,28 @@ class Viewport:
         if sync is not None:
             sync.close()
 
-    def update(self, depsgraph: Any) -> None:
+    def update(self, depsgraph: Any, everything: bool = False) -> None:
         """Brings the scene up to date; the running render goes on where nothing has become different."""
+        self._undo_steps = undo_steps.count
         if self._sync is None:
             self._sync = SceneSync(settings.threads_of(depsgraph.scene.render))
         self._failure = ""
         try:
-            if self._sync.update(depsgraph, self._stop):
+            if self._sync.update(depsgraph, self._stop, everything):
                 self._shown = None
         except (OpalError, ValueError, MemoryError) as error:
             self._shown = None
             self._failure = str(error) or "There is not enough memory to show this scene."
+        except Exception as error:  # what Blender swallows would leave a view that shows its last picture for good
+            traceback.print_exc()
+            self._shown = None
+            self._failure = f"Opal failed on this scene ({type(error).__name__}: {error}); the console has the details."
 
     def draw(self, context: Any, depsgraph: Any) -> None:
         """Draws the newest picture; restarts the render when the view is another."""
         engine, region = self._engine(), context.region
+        if self._undo_steps != undo_steps.count:
+            self.update(depsgraph, everything=True)
         if self._failure:
             engine.update_stats("", f"Error: {self._failure}")
             return

@@ -99,7 +99,7 @@ class SceneSync:
         if builder is not None:
             builder.scene.close()
 
-    def update(self, depsgraph: Any, before_change: Callable[[], None] = _nothing) -> bool:
+    def update(self, depsgraph: Any, before_change: Callable[[], None] = _nothing, everything: bool = False) -> bool:
         """Reads what an edit has touched.
 
         Parameters
@@ -107,6 +107,8 @@ class SceneSync:
         depsgraph : bpy.types.Depsgraph
         before_change : callable
             Called before the kernels' scene is touched for the first time: stops what renders it.
+        everything : bool
+            Whatever the depsgraph says, all of it is read.
 
         Returns
         -------
@@ -119,7 +121,7 @@ class SceneSync:
             In one sentence; there is no scene then.
         """
         changes = changes_of(depsgraph)
-        if self._builder is None or changes.everything or _name_of(depsgraph) != self._kept.of:
+        if everything or self._builder is None or changes.everything or _name_of(depsgraph) != self._kept.of:
             return self._rebuild(depsgraph, before_change)
         try:
             changed = self._update_in_place(depsgraph, changes, before_change)

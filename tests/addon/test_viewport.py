@@ -211,6 +211,90 @@ def color_of(name):
     return next(n for n in bpy.data.materials[name].node_tree.nodes if "Color" in n.inputs).inputs["Color"].default_value
 
 
+UNDONE = (
+    "a colour",
+    "a gem's species",
+    "a lamp's power",
+    "where an object stands",
+    "a shape",
+    "who wears a material",
+    "a material's kind",
+    "deleting",
+    "deleting a material",
+    "haze",
+)
+
+
+@pytest.mark.parametrize("name", UNDONE)
+def test_an_edit_that_is_undone_and_redone_shows_what_was_before_and_after(view, name):
+    """Undo puts other data-blocks in the place of those that were read: names for the session stay, addresses do not."""
+    bpy.ops.ed.undo_push(message="before")
+    first = view.picture()
+    view.edit(EDITS[name][0])
+    bpy.ops.ed.undo_push(message="edited")
+    edited = view.picture()
+    for step, expected in ((bpy.ops.ed.undo, first), (bpy.ops.ed.redo, edited), (bpy.ops.ed.undo, first)):
+        step()
+        view.sync.update(bpy.context.evaluated_depsgraph_get())
+        np.testing.assert_array_equal(view.picture(), view.fresh())
+        np.testing.assert_array_equal(view.picture(), expected)
+
+
+def test_a_view_that_was_not_told_of_an_undo_reads_everything_when_it_is_drawn(monkeypatch):
+    viewport = stage.addon("viewport")
+    asked = []
+
+    class Engine:
+        def update_stats(self, *_words):
+            pass
+
+    class Sync:
+        scene = None
+
+        def update(self, _depsgraph, _stop, everything):
+            asked.append(everything)
+            return True
+
+    engine, context = Engine(), type("Context", (), {"region": None})
+    shown = viewport.Viewport(engine)
+    shown._sync = Sync()
+    shown.draw(context, None)
+    assert asked == []
+    bpy.ops.ed.undo_push(message="one")
+    bpy.ops.ed.undo_push(message="two")
+    bpy.ops.ed.undo()
+    shown.update(None)
+    shown.draw(context, None)
+    assert asked == [False], "it was told"
+    bpy.ops.ed.redo()
+    shown.draw(context, None)
+    shown.draw(context, None)
+    assert asked == [False, True]
+
+
+def test_a_view_whose_reading_fails_says_so_and_reads_anew_with_the_next_edit(view):
+    viewport = stage.addon("viewport")
+
+    class Engine:
+        said = ""
+
+        def update_stats(self, _title, words):
+            self.said = words
+
+    class Sync:
+        scene = None
+
+        def update(self, *_arguments):
+            raise AttributeError("something unforeseen")
+
+    engine = Engine()
+    shown = viewport.Viewport(engine)
+    shown._sync = Sync()
+    shown.update(None)
+    shown.draw(type("Context", (), {"region": None}), None)
+    assert "something unforeseen" in engine.said
+
+
 def resident():
     with open("/proc/self/statm") as file:
         return int(file.read().split()[1]) * 4096

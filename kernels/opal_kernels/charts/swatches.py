@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Small pictures of what a material looks like, for lists to choose from: (size, size, 4), display values, rows from the bottom up."""
+"""Small pictures of what a material looks like, for lists to choose from: (size, size, 4), display values, premultiplied as
+Blender draws icons, rows from the bottom up."""
 
 from __future__ import annotations
 
@@ -54,6 +55,7 @@ def strip(rows: np.ndarray, size: int = 32) -> np.ndarray:
     out = np.ones((size, size, 4), np.float32)
     out[..., :3] = colours
     out[..., 3] = (place >= 0) & (place <= 1)
+    out[..., :3] *= out[..., 3:]
     return out
 
 
@@ -61,4 +63,5 @@ def _in_a_disc(colours: np.ndarray, distance: np.ndarray, size: int) -> np.ndarr
     out = np.ones((size, size, 4), np.float32)
     out[..., :3] = colours
     out[..., 3] = np.clip((1.0 - distance) * size / 2.0 + 0.5, 0.0, 1.0)
+    out[..., :3] *= out[..., 3:]
     return out
