@@ -222,3 +222,46 @@ def test_deleting_what_is_being_rendered_ends_in_a_picture(tmp_path):
     assert np.isfinite(picture).all()
     assert deleted == {"Plane"} and "Plane" not in bpy.data.objects
     assert not stage.render(tmp_path)[..., :3].any()
+
+
+@pytest.mark.parametrize("what", ["the engine", "the camera", "the world and the view layer"])
+def test_switching_while_it_renders_ends_in_the_picture_that_was_asked_for(what, tmp_path):
+    scene = stage.scene(width=64, height=48, passes=6, samples=64)
+    scene.opal.denoise = False
+    camera = stage.camera((0, 0, 5))
+    stage.world((0.3, 0.3, 0.3))
+    stage.plane(size=20, material=stage.glowing())
+    done = []
+
+    def switch(*_):
+        if done or not any(thread.name == "Opal pass" for thread in threading.enumerate()):
+            return
+        done.append(what)
+        if what == "the engine":
+            scene.render.engine = "CYCLES"
+        elif what == "the camera":
+            bpy.data.objects.remove(camera)
+        else:
+            scene.world = None
+            scene.view_layers.new("Another")
+
+    bpy.app.handlers.render_stats.append(switch)
+    try:
+        picture = stage.render(tmp_path)
+    finally:
+        bpy.app.handlers.render_stats.remove(switch)
+    assert done, "it was switched while a pass ran"
+    assert picture[..., :3].mean() == pytest.approx(1, rel=0.01)
+
+
+def test_an_artists_image_and_text_of_the_same_name_are_left_alone():
+    """The gem's report, as the chart of the rainbow does, keeps its own beside them, and fills those anew the next time."""
+    name = "Gem Report"
+    bpy.data.images.new(name, 4, 4)
+    bpy.data.texts.new(name).write("mine")
+    bpy.ops.opal.add_gem(cut="BRILLIANT", species="DIAMOND")
+    for _ in range(2):
+        assert bpy.ops.opal.gem_report(size=128, passes=1, tilt_steps=3) == {"FINISHED"}
+    assert tuple(bpy.data.images[name].size) == (4, 4) and bpy.data.texts[name].as_string().strip() == "mine"
+    assert [i.name for i in bpy.data.images if i.name.startswith(name)] == [name, name + ".001"]
+    assert [t.name for t in bpy.data.texts if t.name.startswith(name)] == [name, name + ".001"]
