@@ -27,7 +27,7 @@ BUILT_IN: dict[str, dict[str, Any]] = {
     "Preview": {"passes": 8, "samples_per_pass": 2, "photons_per_pass": 50_000, "max_depth": 16, "denoise": True},
     "Final": {"passes": 256, "samples_per_pass": 4, "photons_per_pass": 500_000, "noise_threshold": 0.005},
     "Caustics": {"passes": 512, "samples_per_pass": 1, "photons_per_pass": 2_000_000, "gather": 32},
-    "Fog and Beams": {"passes": 256, "samples_per_pass": 2, "volume_estimate": "BEAMS", "volume_photons_per_pass": 100_000},
+    "Fog and Beams": {"passes": 256, "photons_carry": "ALL", "volume_estimate": "BEAMS", "volume_photons_per_pass": 5_000},
 }
 
 
