@@ -21,7 +21,7 @@ class SunGuide {
     if (!lights || lights->suns.empty() || !here.scatters() || !(most > 0)) return;
     float forward = 0;
     for (int i = 0; i < here.n; ++i) forward = std::max(forward, here.phase[i]->value(w.nm[0], 1));
-    if (forward < kPeaked / (4 * kPi)) return;
+    if (forward < kPeaked / (4 * kPi) || forward > kBeam / (4 * kPi)) return;
     lights_ = lights, here_ = &here, part_ = most * lights->sun_share;
   }
 
@@ -47,7 +47,9 @@ class SunGuide {
   }
 
  private:
-  static constexpr float kPeaked = 3;  // times isotropic, straight on
+  // Times isotropic, straight on: flatter ones need no guide, and where the lobe is a beam (Henyey and Greenstein's from 0.87
+  // on) it brings nothing: light then turns by many small steps.
+  static constexpr float kPeaked = 3, kBeam = 100;
 
   const LightTables *lights_ = nullptr;
   const MediumHere *here_ = nullptr;
