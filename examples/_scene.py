@@ -199,6 +199,35 @@ def glass(
     return gem(name, "CUSTOM", dispersion="CAUCHY", cauchy_b=index, cauchy_c=dispersion, absorption_color=colour, absorption_depth=depth)
 
 
+def medium(name: str, extinction: float, albedo: Sequence[float] = (1.0, 1.0, 1.0), anisotropy: float = 0.0) -> bpy.types.Material:
+    """A homogeneous medium.
+
+    Parameters
+    ----------
+    extinction : float
+        σt, 1/m.
+    albedo : (float, float, float)
+        σs / σt, linear Rec.709.
+    anisotropy : float
+        Mean cosine of Henyey and Greenstein's phase function; 0 is isotropic.
+    """
+    material = _with_nodes(name)
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    nodes.clear()
+    volume, output = nodes.new("ShaderNodeVolumePrincipled"), nodes.new("ShaderNodeOutputMaterial")
+    volume.inputs["Density"].default_value = extinction
+    volume.inputs["Color"].default_value = (*albedo, 1.0)
+    volume.inputs["Anisotropy"].default_value = anisotropy
+    links.new(volume.outputs["Volume"], output.inputs["Volume"])
+    if hasattr(material, "opal"):
+        material.opal.kind = "MEDIUM"
+        settings = material.opal.medium
+        settings.extinction, settings.albedo = extinction, albedo
+        settings.phase = "HENYEY_GREENSTEIN" if anisotropy else "ISOTROPIC"
+        settings.anisotropy = anisotropy
+    return material
+
+
 def limit(scene: bpy.types.Scene, passes: int, photons: int, seconds: float = 170.0) -> None:
     """Passes and photons a pass of Opal, denoised, and the time after which the render ends at the latest; nothing without the engine."""
     if hasattr(scene, "opal"):

@@ -9,6 +9,8 @@
 #include "core/vec.h"
 
 #include <array>
+#include <bit>
+#include <cstdint>
 
 namespace opal {
 
@@ -70,6 +72,23 @@ constexpr Spectrum operator*(Spectrum a, float s) { return a *= s; }
 constexpr Spectrum operator*(float s, Spectrum a) { return a *= s; }
 constexpr Spectrum operator/(Spectrum a, const Spectrum &b) { return a /= b; }
 constexpr Spectrum operator/(Spectrum a, float s) { return a /= s; }
+
+// e to the power of each, for all wavelengths in one go: exp(x) = 2^n exp(f ln 2), x / ln 2 rounded to n, the rest by its
+// Taylor series. Within 3 units of the last place; 0 below -87, infinities not handled above 88.
+inline Spectrum exp(const Spectrum &x) {
+  constexpr float kPerOctave = 1.44269504f, kOctaveHigh = 0.693359375f, kOctaveLow = -2.12194440e-4f;
+  constexpr float kRound = 12582912.0f;  // 1.5 * 2^23: adding it leaves whole numbers
+  Spectrum result;
+  for (int i = 0; i < kWavelengths; ++i) {
+    const float clamped = std::min(std::max(x.v[i], -87.0f), 88.0f);
+    const float n = (clamped * kPerOctave + kRound) - kRound;
+    const float f = (clamped - n * kOctaveHigh) - n * kOctaveLow;
+    const float series = 1 + f * (1 + f * (1 / 2.0f + f * (1 / 6.0f + f * (1 / 24.0f + f * (1 / 120.0f + f * (1 / 720.0f))))));
+    const float power = std::bit_cast<float>((int32_t(n) + 127) << 23);
+    result.v[i] = x.v[i] < -87.0f ? 0.0f : series * power;
+  }
+  return result;
+}
 
 // 1 nm table lookup with linear interpolation; outside the range the end value holds.
 using SpectralTable = std::array<float, kTableSize>;

@@ -86,7 +86,7 @@ class CameraPath {
 
  private:
   void step() {
-    const Hit hit = next_hit(scene_, ray_, ray_kind_);
+    const Hit hit = hit_ = next_hit(scene_, ray_, ray_kind_);
     ++counts_.path;
     if (hit.valid()) absorb(scene_, interior_, hit.t, w_, throughput_);
     media_ = media_that_fill(scene_, entered_, interior_);
@@ -262,6 +262,7 @@ class CameraPath {
                 : sample.scattering & kScatterDiffuse ? uint32_t(OPAL_RAY_DIFFUSE)
                                                       : uint32_t(OPAL_RAY_GLOSSY);
     ray_ = leave_surface(scene_, ray_, surface_.sp, sample.wi);
+    note_surface_left();
     travelled_ = 0;
     roulette(sampler_.get1d(dimension + kDimRoulette));
   }
@@ -328,6 +329,7 @@ class CameraPath {
     const float rest = std::max(0.0f, ray_.t_max - surface_.sp.ray_length);
     ray_ = leave_surface(scene_, ray_, surface_.sp, ray_.direction);
     ray_.t_max = rest;
+    note_surface_left();
     ++events_;
   }
 
@@ -494,6 +496,7 @@ class CameraPath {
     rough_in_medium_ = true;
     ray_kind_ = OPAL_RAY_SCATTER;
     ray_ = {last_.p, direction, 0, kInfinity, ray_.time};
+    left_ = {};
     travelled_ = 0;
     roulette(sampler_.get1d(dimension + kDimRoulette), promise(here, direction));
     return true;
@@ -618,6 +621,7 @@ class CameraPath {
     rough_in_medium_ = true;
     ray_kind_ = OPAL_RAY_SCATTER;
     ray_ = {last_.p, direction, 0, kInfinity, ray_.time};
+    left_ = {};
     travelled_ = 0;
     roulette(sampler_.get1d(dimension + kDimRoulette), promise(here, direction));
     return true;
@@ -745,11 +749,22 @@ class CameraPath {
   void gather_volume(const CameraWay &way, float t_end, bool rainbow, uint32_t dimension) {
     if (pass_.volume.empty() || !gathers_after_rough(settings_.photons_carry, rough_events_)) return;
     const Spectrum radiance = volume_radiance(pass_, {ray_.origin, ray_.direction, t_end, way, media_key(media_), filter(), w_,
-                                                      index_, sampler_.get1d(dimension + kDimMarch)});
+                                                      index_, sampler_.get1d(dimension + kDimMarch), faces(t_end)});
     if (radiance.is_zero()) return;
     const InMedium scattered(*this, rainbow);
     add_bounced(throughput_ * radiance / path_pdf_.average(), settings_.photons_carry == OPAL_CARRY_CAUSTICS);
   }
+
+  // What bounds the way through the media, if it ends where the ray meets something.
+  MediumFaces faces(float t_end) const {
+    MediumFaces faces{left_, {}};
+    if (!hit_.valid() || t_end < hit_.t) return faces;
+    const Vec3 n = scene_.shading_point(ray_, hit_).ng;
+    faces.end = dot(n, ray_.direction) > 0 ? -n : n;
+    return faces;
+  }
+  // Follows a ray that has left a surface.
+  void note_surface_left() { left_ = dot(surface_.sp.ng, ray_.direction) > 0 ? surface_.sp.ng : -surface_.sp.ng; }
 
   void gather_in_varying(float t_end, uint32_t dimension) {
     float t_begin = 0;
@@ -887,6 +902,8 @@ class CameraPath {
   RayCounts &counts_;
 
   Ray ray_;
+  Hit hit_;    // what it meets
+  Vec3 left_;  // the normal of the surface it comes from, on its side; 0: it begins in a medium or at the lens
   uint32_t ray_kind_ = OPAL_RAY_CAMERA;
   InteriorStack interior_;
   MediumSet entered_;  // whose boundaries it has come through

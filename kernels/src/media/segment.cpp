@@ -80,8 +80,8 @@ Vec3 MediumHere::sample_phase(const Wavelengths &w, const Vec3 &forward, float p
 }
 
 Spectrum transmittance_over(const Spectrum &extinction, float t) {
-  Spectrum s;
-  for (int i = 0; i < kWavelengths; ++i) s[i] = extinction[i] > 0 ? std::exp(-extinction[i] * t) : 1.0f;
+  Spectrum s = exp(extinction * -t);
+  for (int i = 0; i < kWavelengths; ++i) s[i] = extinction[i] > 0 ? s[i] : 1.0f;
   return s;
 }
 

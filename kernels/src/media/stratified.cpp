@@ -124,19 +124,14 @@ Spectrum StratifiedMedia::depth(float t) const {
   return sum;
 }
 
-Spectrum StratifiedMedia::transmittance(float t) const {
-  Spectrum s = depth(t);
-  for (int k = 0; k < kWavelengths; ++k) s[k] = std::exp(-s[k]);
-  return s;
-}
+Spectrum StratifiedMedia::transmittance(float t) const { return exp(depth(t) * -1.0f); }
 
 Spectrum StratifiedMedia::replaced_transmittance(float t) const {
   Spectrum sum(0.0f);
   for (int i = 0; i < n_; ++i)
     for (int k = 0; parts_[i].replaced && k < kWavelengths; ++k)
       if (parts_[i].medium.extinction[k] > 0) sum[k] += parts_[i].medium.extinction[k] * parts_[i].profile.depth(t);
-  for (int k = 0; k < kWavelengths; ++k) sum[k] = std::exp(-sum[k]);
-  return sum;
+  return exp(sum * -1.0f);
 }
 
 float StratifiedMedia::mean_extinction(float t) const {

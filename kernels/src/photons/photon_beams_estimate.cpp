@@ -20,10 +20,12 @@ Spectrum photon_beams_estimate(const VolumeMap &map, const VolumeQuery &q) {
     if (!here.scatters()) return;
     const Spectrum scattered =
         here.scattering * here.scattered(q.w, beam.direction, -q.direction, q.filter) * q.way.transmittance(c.t);
+    Spectrum flux, depth;
     for (int k = 0; k < kWavelengths; ++k) {
       const uint32_t at = PassContext::position_of(q.index, uint32_t(k));
-      sum[k] += beam.flux[at] * scattered[k] * kernel * std::exp(-beam.extinction[at] * c.s);
+      flux[k] = beam.flux[at], depth[k] = beam.extinction[at] * -c.s;
     }
+    sum += flux * exp(depth) * scattered * kernel;
   });
   return sum;
 }

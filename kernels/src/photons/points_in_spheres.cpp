@@ -4,7 +4,8 @@
 //
 //   S(t) (exp(-sigma_t a) - exp(-sigma_t b)) / sigma_t,      S = sum f flux / (4/3 pi r3)
 //
-// over the n photons nearest the place t, within the map's radius. t is jittered within the step with the density of the
+// over the n photons nearest the place t, within the map's radius; what boundaries cut off the sphere, taken as flat, is not
+// counted in its volume. t is jittered within the step with the density of the
 // transmittance, so that the step count decides on noise alone. Steps are halved where the source differs from their
 // neighbour's by more than the tolerance; the photons asked about that are those of another wavelength set, because an
 // estimate that chose its own places by its own photons would be biased.
@@ -74,7 +75,7 @@ class March {
     map_.near(
         q_.origin + q_.direction * t, set,
         [&](const VolumePhoton &photon, float d2) {
-          if (photon.media != q_.media) return;
+          if (photon.media != q_.media || q_.beyond(photon.position)) return;
           if (full) std::pop_heap(found, found + count--);
           found[count++] = {d2, &photon};
           if (full) std::push_heap(found, found + count);
@@ -91,7 +92,19 @@ class March {
       const Spectrum phase = here.scattered(q_.w, unpack_direction(photon.direction), -q_.direction, q_.filter);
       for (int k = 0; k < kWavelengths; ++k) sum[k] += photon.flux[PassContext::position_of(q_.index, uint32_t(k))] * phase[k];
     }
-    return sum / (4.0f / 3.0f * kPi * radius2 * std::sqrt(radius2));
+    return sum / volume_within(t, std::sqrt(radius2));
+  }
+
+  // Of a sphere round the place t, on the inner side of the faces.
+  float volume_within(float t, float radius) const {
+    const auto beyond = [&](float height) {  // the cap cut off at this height above the centre
+      return height < radius ? kPi / 3 * sqr(radius - height) * (2 * radius + height) : 0.0f;
+    };
+    const float whole = 4.0f / 3.0f * kPi * radius * radius * radius;
+    float cut = 0;
+    if (length_squared(q_.faces.begin) > 0) cut += beyond(t * dot(q_.direction, q_.faces.begin));
+    if (length_squared(q_.faces.end) > 0) cut += beyond(-(q_.t_end - t) * dot(q_.direction, q_.faces.end));
+    return std::max(whole - cut, 0.1f * whole);
   }
 
   const VolumeMap &map_;

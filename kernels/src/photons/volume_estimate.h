@@ -13,6 +13,12 @@
 
 namespace opal {
 
+// What bounds the media where a ray enters and leaves them: normals that point inwards, 0 where the ray begins or ends within.
+// A kernel that reaches across holds fewer photons than one inside; knowing where it is cut, estimates make up for that.
+struct MediumFaces {
+  Vec3 begin, end;
+};
+
 // A camera ray's way through media, 0 .. t_end (possibly infinite).
 struct VolumeQuery {
   const Vec3 &origin, &direction;
@@ -23,6 +29,13 @@ struct VolumeQuery {
   const Wavelengths &w;
   uint32_t index;  // of the path among the pass's wavelengths
   float jitter;    // 0..1
+  MediumFaces faces;
+
+  // Whether a place lies beyond the planes of the faces.
+  bool beyond(const Vec3 &p) const {
+    const Vec3 from_begin = p - origin;
+    return dot(from_begin, faces.begin) < 0 || (std::isfinite(t_end) && dot(from_begin - direction * t_end, faces.end) < 0);
+  }
 };
 
 // Radiance at the path's wavelengths that arrives at the ray's origin, transmittance included.
