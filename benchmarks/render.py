@@ -7,8 +7,8 @@
 
 Sub-commands: `cycles` (time to Cycles' error at 64 samples), `examples` (the examples by `opal.compare_cycles`), `caustics` (prism
 and brilliant, time to relative MSE 0.01), `gems` (what dispersion costs, and its chroma), `speed` (rays, photons, building), `start`
-(import, enable), `viewport` (first image, refinements, edits, F12, memory beside Cycles), `rainbows` (Lorenz-Mie tables beside
-miepython and scattnlay). Run it on a machine that does nothing else.
+(import, enable), `viewport` (first image, refinements, edits, F12, memory beside Cycles), `media` (the fog box of the report,
+the three volume estimates, the fog box beside Cycles), `rainbows` (Lorenz-Mie tables beside miepython and scattnlay). Run it on a machine that does nothing else.
 """
 
 from __future__ import annotations
@@ -34,10 +34,12 @@ def _inside_blender(what: str, options) -> list[dict]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument(
-        "what", nargs="*", help="cycles, examples, caustics, gems, speed, start, viewport, rainbows; cycles, speed and start when left out"
+        "what",
+        nargs="*",
+        help="cycles, examples, caustics, gems, media, speed, start, viewport, rainbows; cycles, speed and start when left out",
     )
     parser.add_argument("--repeats", type=int, default=3)
-    parser.add_argument("--seconds", type=float, default=30.0, help="of each run of caustics")
+    parser.add_argument("--seconds", type=float, default=30.0, help="of each run of caustics and media")
     parser.add_argument("--reference-seconds", type=float, default=300.0, help="of the references of caustics, made once")
     parser.add_argument("--reference-samples", type=int, default=4096, help="of the references of cycles")
     parser.add_argument("--scenes", nargs="+", default=["prism", "brilliant"], help="of caustics")
@@ -63,6 +65,15 @@ def main() -> None:
 
             found[what] = viewport.measure(options.repeats) if options.inside else viewport.memory()
             viewport.report(found[what])
+            if not options.inside:
+                found[what] += _inside_blender(what, options)
+        elif what == "media":
+            import media
+
+            found[what] = (
+                media.beside_cycles(options.repeats, options.reference_samples) if options.inside else media.measure(options.seconds)
+            )
+            media.report(found[what])
             if not options.inside:
                 found[what] += _inside_blender(what, options)
         elif what == "caustics":
@@ -91,7 +102,7 @@ def main() -> None:
             found[what] = gems.measure(options.scenes, options.seconds, options.repeats, options.reference_seconds)
             gems.report(found[what])
         else:
-            parser.error(f"there is no {what}: cycles, examples, caustics, gems, speed, start, viewport or rainbows")
+            parser.error(f"there is no {what}: cycles, examples, caustics, gems, media, speed, start, viewport or rainbows")
     if options.json:
         options.json.parent.mkdir(parents=True, exist_ok=True)
         options.json.write_text(json.dumps(found, indent=1))

@@ -16,9 +16,13 @@ import math
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import bpy
 from mathutils import Matrix, Vector
+
+if TYPE_CHECKING:
+    import numpy as np
 
 ROOT = Path(__file__).resolve().parent.parent
 EXTENSION = "bl_ext.user_default.opal"
@@ -374,8 +378,49 @@ def render(scene: bpy.types.Scene, path: Path) -> Path:
     return path
 
 
-def run(build: Callable[[], bpy.types.Scene], name: str) -> None:
-    """The scripts' `main`: build the scene, render it, print where the picture is."""
+def passes_of_render(scene: bpy.types.Scene, path: Path) -> dict[str, np.ndarray]:
+    """The passes of the render that was just made, kept in a multilayer OpenEXR file: by name, (height, width, channels), linear,
+    rows from the bottom up."""
+    import numpy as np
+
+    settings = scene.render.image_settings
+    if hasattr(settings, "media_type"):
+        settings.media_type = "MULTI_LAYER_IMAGE"
+    settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
+    bpy.data.images["Render Result"].save_render(str(path), scene=scene)
+    bpy.utils.expose_bundled_modules()
+    import OpenImageIO as oiio
+
+    found: dict[str, dict[str, np.ndarray]] = {}
+    for part in range(oiio.ImageBuf(str(path)).nsubimages):
+        image = oiio.ImageBuf(str(path), part, 0)
+        pixels = image.get_pixels(oiio.FLOAT)[::-1]
+        for i, name in enumerate(image.spec().channelnames):
+            _, pass_name, letter = name.rsplit(".", 2)
+            found.setdefault(pass_name, {})[letter] = pixels[..., i]
+    return {name: np.stack([planes[letter] for letter in "RGBAXYZV" if letter in planes], axis=-1) for name, planes in found.items()}
+
+
+def write_picture(scene: bpy.types.Scene, picture: np.ndarray, path: Path) -> None:
+    """A linear picture, rows from the bottom up, as a PNG through the scene's view."""
+    import numpy as np
+
+    height, width, _ = picture.shape
+    settings = scene.render.image_settings
+    if hasattr(settings, "media_type"):
+        settings.media_type = "IMAGE"
+    settings.file_format, settings.color_depth = "PNG", "8"
+    image = bpy.data.images.new(path.stem, width, height, float_buffer=True)
+    image.colorspace_settings.name = "Linear Rec.709"
+    pixels = np.ones((height, width, 4), np.float32)
+    pixels[..., :3] = picture
+    image.pixels.foreach_set(pixels.reshape(-1))
+    image.save_render(str(path), scene=scene)
+    bpy.data.images.remove(image)
+
+
+def run(build: Callable[[], bpy.types.Scene], name: str, afterwards: Callable[[bpy.types.Scene, Path], None] | None = None) -> None:
+    """The scripts' `main`: build the scene, render it, print where the picture is; then do with the render what `afterwards` does."""
     arguments = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:] if not bpy.app.binary_path else []
     parser = argparse.ArgumentParser(prog=name, description=sys.modules["__main__"].__doc__)
     parser.add_argument("--engine", default="OPAL", help="OPAL, or CYCLES to compare")
@@ -395,4 +440,7 @@ def run(build: Callable[[], bpy.types.Scene], name: str) -> None:
         scene.opal.passes = options.passes
     if options.save:
         bpy.ops.wm.save_as_mainfile(filepath=str(options.save.resolve()))
-    print(render(scene, options.output.resolve()), flush=True)
+    path = render(scene, options.output.resolve())
+    if afterwards is not None and options.engine == "OPAL":
+        afterwards(scene, path)
+    print(path, flush=True)

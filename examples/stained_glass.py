@@ -70,21 +70,23 @@ def build() -> bpy.types.Scene:
     scene.unit_settings.length_unit = "METERS"
     stone = _scene.matte("Stone", (0.34, 0.31, 0.28))
     wall_with_holes(stone)
-    _scene.box("Floor", (-4.2, -HALF, -0.1), (WALL, HALF, 0.0), stone)
-    _scene.box("Back wall", (-4.2, HALF, -0.1), (WALL, HALF + 0.1, TOP), stone)
-    _scene.box("Front wall", (-4.2, -HALF - 0.1, -0.1), (WALL + 0.1, -HALF, TOP), stone)
+    _scene.mesh("Floor", [(-4.2, -HALF, 0.0), (WALL, -HALF, 0.0), (WALL, HALF, 0.0), (-4.2, HALF, 0.0)], [(0, 1, 2, 3)], stone)
+    _scene.box("Back wall", (-4.2, HALF, 0.0), (WALL, HALF + 0.1, TOP), stone)
+    _scene.box("Front wall", (-4.2, -HALF - 0.1, 0.0), (WALL + 0.1, -HALF, TOP), stone)
     _scene.box("Ceiling", (-4.2, -HALF, TOP), (WALL + 0.1, HALF + 0.1, TOP + 0.1), stone)
-    _scene.box("Far wall", (-4.3, -HALF, -0.1), (-4.2, HALF, TOP), stone)
+    _scene.box("Far wall", (-4.3, -HALF, 0.0), (-4.2, HALF, TOP), stone)
     glass = {name: _scene.glass(name, 1.5, colour=colour, depth=THICKNESS) for name, colour in COLOURS.items()}
     x, lap = WALL + 0.04, 0.01
     for y, z, name in panes():
         _scene.box("Pane", (x, y - lap, z - lap), (x + THICKNESS, y + PANE + lap, z + PANE + lap), glass[name])
-    _scene.box("Dust", (-4.15, -HALF + 0.02, 0.005), (WALL - 0.02, HALF - 0.02, TOP - 0.02), _scene.medium("Dust", 0.055, (0.95, 0.94, 0.92), 0.2))
+    _scene.box(
+        "Dust", (-4.15, -HALF + 0.02, 0.005), (WALL - 0.02, HALF - 0.02, TOP - 0.02), _scene.medium("Dust", 0.035, (0.95, 0.94, 0.92), 0.2)
+    )
     _scene.lamp("Sun", "SUN", (6.0, -1.6, 5.2), (0.0, 0.0, 0.6), 260.0, angle=math.radians(0.53))
-    _scene.plain_world((0.45, 0.60, 1.0), 0.03)
-    _scene.camera((-3.4, -3.1, 1.55), (1.3, 0.75, 1.75), 24.0)
+    _scene.plain_world((0.45, 0.60, 1.0), 0.01)
+    _scene.camera((-3.6, -2.9, 1.45), (1.3, 0.55, 1.85), 22.0)
     scene.render.resolution_x, scene.render.resolution_y = 640, 360
-    _scene.limit(scene, 64, 20_000)
+    _scene.limit(scene, 64, 8_000)
     return scene
 
 
