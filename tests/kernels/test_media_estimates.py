@@ -84,7 +84,7 @@ def cloud_beside_a_mirror(scene):
     fill(scene, (-0.9, -0.9, -0.9), (0.9, 0.9, 0.9), cloud)
     mirror = scene.add_material(programs.mirror((0.9, 0.9, 0.9)), flags=MaterialFlag.CASTER)
     scene.add_instances(scene.add_mesh(*box((1.2, -1, -1), (1.3, 1, 1))), IDENTITY, [mirror])
-    scene.add_light(Light(type=LightType.POINT, power=40.0, radius=1.0, transform=placed(-2.6, 0.3, 0.6)[:3]))
+    scene.add_light(Light(type=LightType.RECTANGLE, power=20.0, size_u=1.2, size_v=1.2, transform=looking_down(2.5)))
 
 
 def coloured_fog_round_glass(scene):
