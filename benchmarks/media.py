@@ -193,7 +193,7 @@ def measure(seconds: float) -> list[dict]:
 
 
 def report(records: list[dict]) -> None:
-    """Prints the figures, and which estimate is the best default: the least product of times."""
+    """Prints the figures, and which estimate was quickest: the least product of times."""
     products: dict[str, float] = {}
     for r in records:
         if r["what"] == "report":
@@ -209,4 +209,4 @@ def report(records: list[dict]) -> None:
             cycles, opal = r["seconds"]["CYCLES"], r["seconds"]["OPAL"]
             print(f"fog box to relative MSE {ERROR}: Cycles {cycles:.2f} s, Opal {opal:.2f} s, ratio {r['ratio']:.2f}; means {r['means']}")
     if products:
-        print(f"best default: {min(products, key=products.get)}")
+        print(f"least time to equal error: {min(products, key=products.get)}")
