@@ -66,12 +66,12 @@ def render_and_escape():
     bpy.app.handlers.render_stats.append(lambda text, *_: words.append(str(text)))
     bpy.app.handlers.render_complete.append(lambda *_: ended.append("complete"))
     bpy.app.handlers.render_cancel.append(lambda *_: ended.append(time.monotonic()))
-    scene.opal.passes, scene.opal.samples_per_pass = 10_000, 64
+    scene.opal.passes, scene.opal.samples_per_pass = 10_000, 16
     w.point_at(w.area("VIEW_3D"), 0.5, 0.6)
     yield 0.5
     w.press("F12")
     yield from w.until(lambda: bpy.app.is_job_running("RENDER"), 15, "a render after F12")
-    yield from w.until(lambda: any("Pass 2" in text for text in words), 60, "the second pass")
+    yield from w.until(lambda: any("Pass 2" in text for text in words), 90, "the second pass")
     yield 1.5
     RESULT["while_rendering"] = w.tones(w.screenshot("rendering"), w.box_of(w.area("IMAGE_EDITOR")))
     w.point_at(w.area("IMAGE_EDITOR"), 0.5, 0.5)
