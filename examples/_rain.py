@@ -128,5 +128,5 @@ def fair_weather(sun_height: float, target: tuple[float, float, float], lens: fl
     scene.camera.data.clip_end = 1e5
     scene.view_settings.exposure = 0.7
     scene.render.resolution_x, scene.render.resolution_y = 960, 540
-    _scene.limit(scene, 8, 0, 55.0)
+    _scene.limit(scene, 6, 0, 50.0)
     return scene
