@@ -20,7 +20,7 @@ from error import relative_mse, time_to
 ROOT = Path(__file__).resolve().parent.parent
 REPORT_SECONDS = 64 * 60 + 36
 REPORT_SIZE = 512
-SIZE = 96
+SIZE = 64
 ERROR = 0.01
 
 
