@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every example builds its scene from nothing, and what lies on its table lies on it. Rendering them is `make render`'s business."""
 
-import importlib
+import importlib.util
 import math
 import sys
 from pathlib import Path
@@ -20,9 +20,17 @@ def examples_on_the_path():
     sys.path.remove(str(EXAMPLES))
 
 
+def example(name):
+    """The module of an example, by its file: a checkout may be called as an example is."""
+    spec = importlib.util.spec_from_file_location(f"example_{name}", EXAMPLES / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_an_example_builds_a_scene_that_can_be_rendered(name):
-    scene = importlib.import_module(name).build()
+    scene = example(name).build()
     assert scene.camera is not None
     assert scene.world is not None
     assert all(obj.data.materials and obj.data.materials[0] for obj in scene.objects if obj.type == "MESH")
@@ -31,7 +39,7 @@ def test_an_example_builds_a_scene_that_can_be_rendered(name):
 
 @pytest.mark.parametrize("name", [name for name in NAMES if not name.startswith("rainbow")])  # Rain falls through the ground it wets.
 def test_nothing_sinks_into_the_table(name):
-    scene = importlib.import_module(name).build()
+    scene = example(name).build()
     bpy.context.view_layer.update()
     for obj in scene.objects:
         if obj.type == "MESH" and (name != "opal" or obj.data.materials[0].opal.kind == "GEM"):  # opal's table stands in a landscape

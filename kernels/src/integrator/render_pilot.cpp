@@ -10,7 +10,8 @@
 namespace opal {
 namespace {
 
-constexpr uint32_t kPilotPhotons = 1u << 15;
+constexpr uint32_t kPilotPhotons = 1u << 16;  // in the first round of those that learn where to emit
+constexpr uint32_t kPlanPhotons = 1u << 14;   // in each of the two halves that the plan compares
 // The pilot's camera paths are counted from here, far above those of any pass.
 constexpr uint32_t kPilotSample = 0x80000000u;
 
@@ -82,7 +83,7 @@ bool Render::plan_work() {
   const int blocks_x = (frame_width + kPlanBlock - 1) / kPlanBlock, blocks_y = (frame_height + kPlanBlock - 1) / kPlanBlock;
   std::vector<PilotBlock> blocks(size_t(blocks_x) * size_t(blocks_y));
   const bool photons = wants_photons();
-  if (photons) scale_photons(settings, std::min(1.0, 0.5 * kPilotPhotons / settings_.photons_per_pass));
+  if (photons) scale_photons(settings, std::min(1.0, double(kPlanPhotons) / settings_.photons_per_pass));
   const uint32_t n_photons = uint32_t(settings.photons_per_pass);
   const uint32_t apart = scene_.any_medium ? uint32_t(settings.volume_photons) : 0;
   int64_t photon_rays = 0;

@@ -31,7 +31,7 @@ from opal_kernels.optics.rainbow import (
 
 _DEFAULT_SIZES = {"AIRY": 21, "DROPLET": 21, "DESCARTES": 1, "DESCARTES_SAMPLED": 1}
 _RAY_GRID = 36001  # 0.005 degrees
-_FINEST = 72000  # intervals that a polynomial is filled in to
+_FINEST = 288000  # intervals that a polynomial is filled in to
 _RAYS_FROM = 60.0  # size parameter above which rays say what a drop lets straight through
 _POLL_SECONDS = 0.1  # how often a caller who watches may stop a long table
 _NEGLIGIBLE = 1e-7  # share of the cross-section under which a size is left out
@@ -194,7 +194,7 @@ def _mie(
 def _filled_in(values: np.ndarray, angles: np.ndarray) -> np.ndarray:
     """Rows of a polynomial in cos(theta) at equally spaced angles from 0 to pi, at least one more than its degree: at any angles.
 
-    By a Fourier transform to a grid so fine that linear interpolation between its points loses nothing: under 1e-4 of the finest ripple.
+    By a Fourier transform to a grid so fine that linear interpolation between its points loses nothing: under 1e-5 of the finest ripple.
     """
     intervals = values.shape[1] - 1
     times = -(-_FINEST // intervals)
