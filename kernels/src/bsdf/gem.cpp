@@ -87,8 +87,8 @@ bool sample_gem(const ClosureSet &set, const ShadingPoint &sp, Transport transpo
   return out.weight.is_finite();
 }
 
-bool follow_polished(const GemBoundary &gem, int wavelength, const ShadingPoint &sp, bool transmission, Vec3 &wi, float &share,
-                     float &correction) {
+bool follow_polished(const GemBoundary &gem, int wavelength, const ShadingPoint &sp, bool transmission, Transport transport,
+                     Vec3 &wi, float &share, float &correction) {
   const Vec3 &n = sp.ns;
   const float cos_o = dot(n, sp.wo), eta = gem.eta[wavelength];
   if (!(cos_o > 0)) return false;
@@ -103,7 +103,7 @@ bool follow_polished(const GemBoundary &gem, int wavelength, const ShadingPoint 
     if (transmission) wi = through;
   }
   share = transmission ? 1 - reflected : reflected;
-  correction = flux_correction(n, sp.ng, sp.wo, wi);
+  correction = transport == Transport::Flux ? flux_correction(n, sp.ng, sp.wo, wi) : 1.0f;
   return share > 0;
 }
 

@@ -13,11 +13,11 @@
 namespace opal {
 
 bool sample_gem(const ClosureSet &set, const ShadingPoint &sp, Transport transport, float choice, Vec2 u, BsdfSample &out);
-// Photons: what one wavelength does at its own place on a polished boundary, given that another is reflected or refracted
-// elsewhere on it: its direction, the probability with which it would have chosen the same, and the correction of its flux for
-// an interpolated normal. False: it cannot, or its interpolated normal would not serve for either choice.
-bool follow_polished(const GemBoundary &gem, int wavelength, const ShadingPoint &sp, bool transmission, Vec3 &wi, float &share,
-                     float &correction);
+// What one wavelength does at its own place on a polished boundary, given that another is reflected or refracted elsewhere on
+// it: its direction, the probability with which it would have chosen the same, and the correction of flux for an interpolated
+// normal. False: it cannot, or its interpolated normal would not serve for either choice.
+bool follow_polished(const GemBoundary &gem, int wavelength, const ShadingPoint &sp, bool transmission, Transport transport,
+                     Vec3 &wi, float &share, float &correction);
 // f |cos wi| of a ground boundary, 0 of a polished one.
 Spectrum eval_gem(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, Transport transport, Spectrum &pdf);
 

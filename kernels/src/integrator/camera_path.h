@@ -4,13 +4,16 @@
 // Wavelengths: the hero's geometry is followed. `throughput` is f / p(hero), `path_pdf` is p(lambda) / p(hero) of the
 // path so far; with p_light in the same unit, a contribution is divided by the mean over wavelengths of the pdfs that
 // could have produced it (Wilkie et al. 2014; the bookkeeping follows pbrt-v4's "rescaled path probabilities").
-// Dispersion sets path_pdf of the other wavelengths to 0 and so leaves the hero alone with its full weight.
+// Dispersion sets path_pdf of the other wavelengths to 0 and so leaves the hero alone with its full weight. What the hero meets
+// behind gems some of the others are sent to find as well (photons/colour_trail.h): where they arrive, light is looked for as
+// where the hero arrives, and from there the hero goes on alone.
 #pragma once
 
 #include "integrator/path_tracer.h"
 #include "integrator/sun_guide.h"
 #include "integrator/surface.h"
 #include "media/stratified.h"
+#include "photons/colour_trail.h"
 #include "photons/gather.h"
 #include "scene/contact.h"
 #include "photons/volume_estimate.h"
@@ -63,6 +66,7 @@ class CameraPath {
   void meet_lamps(float t_end, const StratifiedMedia *media);
   void meet_emission(const Hit &hit);
   void escape();
+  void meet_surroundings();
   // Whether photons bring what the ray has met.
   bool brought(const SourceId &source) const;
   void add_met(const SourceId &source, const Spectrum &radiance, const Vec3 &point, const Vec3 &normal, float distance);
@@ -82,6 +86,16 @@ class CameraPath {
   void sample_direct(uint32_t dimension);
   // What of a light sample arrives; false: nothing.
   bool passes(const Vec3 &origin, const LightSample &sample, uint32_t dimension, Passage &through);
+
+  // ---- Wavelengths that follow ----
+  // Notes what a gem has done to the path, or, what it was being no polished gem, that nothing follows any more.
+  void keep_trail(const BsdfSample &sample);
+  // At the end of a trail: those that arrive find their light; what the hero finds here counts by its share among them.
+  void bring_followers();
+  // Light that one of them finds where it arrives; what it carries there and nothing of the hero's is in place.
+  void find_light();
+  // The hero goes on alone.
+  void part_from_followers() { throughput_ *= company_, company_ = 1; }
 
   // ---- Media ----
   // For as long as it lives, throughput and densities are those of having come through an optical depth without an event.
@@ -204,6 +218,8 @@ class CameraPath {
   const Material *material_ = nullptr;
   Surface surface_;
   LastEvent last_;
+  ColourTrail trail_{Transport::Radiance};
+  float company_ = 1;  // by how much the throughput is lowered because others have found light beside the hero
   PathLight light_;
   LayerTracker layers_;
   Spectrum throughput_{1.0f}, path_pdf_{1.0f}, previous_pdf_{1.0f};

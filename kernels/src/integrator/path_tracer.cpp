@@ -46,8 +46,10 @@ void CameraPath::step() {
   if (hit.valid()) absorb(scene_, interior_, hit.t, w_, throughput_);
   media_ = media_that_fill(scene_, entered_, interior_);
   if (!media_.empty()) {
+    trail_.close();
     if (travel_in_medium(hit.t)) return;
   } else {
+    if (trail_.open() && trail_.ends(scene_, hit)) bring_followers();
     meet_lamps(hit.t, nullptr);
   }
   if (!hit.valid()) {
@@ -56,6 +58,7 @@ void CameraPath::step() {
   }
   material_ = &scene_.material_at(hit);
   if (material_->no_surface()) {
+    trail_.close();
     surface_.sp = scene_.shading_point(ray_, hit);
     cross_medium(*material_, surface_.sp, entered_);
     go_straight_on();
@@ -64,6 +67,7 @@ void CameraPath::step() {
   make_surface(scene_, ray_, hit, ray_kind_, bounces_, interior_, w_, surface_);
   if (surface_.is_gem) note_way_in(surface_.boundary);
   if (surface_.nothing) {
+    trail_.close();
     cross_boundary(surface_.boundary, interior_);
     cross_medium(*material_, surface_.sp, entered_);
     go_straight_on();
@@ -107,6 +111,10 @@ void CameraPath::meet_emission(const Hit &hit) {
 
 void CameraPath::escape() {
   alive_ = false;
+  meet_surroundings();
+}
+
+void CameraPath::meet_surroundings() {
   if (!interior_.empty()) {  // out through a hole
     const Spectrum n = index_of_refraction(scene_, interior_.current(), w_);
     throughput_ *= n * n;
@@ -156,6 +164,7 @@ void CameraPath::scatter() {
     sample_direct(dimension);
     if (gathers()) gather();
   }
+  part_from_followers();
 
   BsdfSample sample;
   if (!sample_surface(dimension, sample)) {
@@ -163,6 +172,7 @@ void CameraPath::scatter() {
     return;
   }
   if (sample.scattering & kScatterTransparent) {
+    trail_.close();
     cross_medium(*material_, surface_.sp, entered_);
     throughput_ *= sample.weight;
     update_path_pdf(sample);
@@ -184,6 +194,7 @@ void CameraPath::scatter() {
     final_ray_ = true;
   }
 
+  keep_trail(sample);
   throughput_ *= sample.weight;
   previous_pdf_ = path_pdf_;
   update_path_pdf(sample);
@@ -270,6 +281,7 @@ void CameraPath::roulette(float u, float promise) {
     alive_ = false;
     return;
   }
+  if (trail_.open()) trail_.survived(survive, most);
   throughput_ *= 1 / survive;
 }
 

@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kMaxEvents = 32768;
 constexpr int kRouletteStart = 6;
+constexpr float kMostSurvive = 0.98f;  // of photons, by roulette
 constexpr float kNothing = 0x1p-40f;  // of what a photon set out with: no sum of floats sees it
 constexpr float kUnseenUse = 0.25f;   // of a photon that the camera does not see at first hand: glass and mirrors may show it
 
@@ -22,7 +23,7 @@ EmissionNumbers emission_numbers(const Sampler &sampler) {
 
 // What is large and serves one photon after the other.
 struct PhotonScratch {
-  ColourTrail trail;
+  ColourTrail trail{Transport::Flux};
   Surface surface;  // where a follower leaves its light
 };
 
@@ -158,7 +159,7 @@ class PhotonPath {
     if (sharp_events_ + rough_events_ >= kRouletteStart) {
       const float survive = std::min(kMostSurvive, flux_.max() / (path_pdf_.average() * start_));
       if (!(sampler_.get1d(dimension + kDimRoulette) < survive)) return false;
-      if (trail_.open()) trail_.survived(survive);
+      if (trail_.open()) trail_.survived(survive, kMostSurvive);
       flux_ *= 1 / survive;
     }
     return true;
