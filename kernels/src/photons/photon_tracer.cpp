@@ -14,8 +14,8 @@ namespace {
 constexpr int kMaxEvents = 32768;
 constexpr int kRouletteStart = 6;
 constexpr float kMostSurvive = 0.98f;  // of photons, by roulette
-constexpr float kNothing = 0x1p-40f;  // of what a photon set out with: no sum of floats sees it
-constexpr float kUnseenUse = 0.25f;   // of a photon that the camera does not see at first hand: glass and mirrors may show it
+constexpr float kNothing = 0x1p-40f;   // of what a photon set out with: no sum of floats sees it
+constexpr float kUnseenUse = 0.25f;    // of a photon that the camera does not see at first hand: glass and mirrors may show it
 
 EmissionNumbers emission_numbers(const Sampler &sampler) {
   return {sampler.get2d(kDimEmissionLight), sampler.get2d(kDimEmissionPosition), sampler.get2d(kDimEmissionDirection)};
