@@ -46,8 +46,8 @@ def said(text):
     return any(text in sentence for sentence in stage.problems())
 
 
-def cloud(folder, values, name="density", background=None):
-    """A volume object of 2 m with one grid; its file is written by Blender's own openvdb."""
+def write_grid(path, values, name="density"):
+    """A grid of 2 m about the origin in an OpenVDB file, by Blender's own openvdb."""
     bpy.utils.expose_bundled_modules()
     openvdb = pytest.importorskip("openvdb")
     grid = openvdb.FloatGrid()
@@ -55,10 +55,14 @@ def cloud(folder, values, name="density", background=None):
     grid.name = name
     grid.transform = openvdb.createLinearTransform(2 / (len(values) - 1))
     grid.transform.postTranslate((-1, -1, -1))
-    path = folder / "cloud.vdb"
     openvdb.write(str(path), grids=[grid])
+
+
+def cloud(folder, values, name="density"):
+    """A volume object with one grid."""
+    write_grid(folder / "cloud.vdb", values, name)
     volume = bpy.data.volumes.new("Cloud")
-    volume.filepath = str(path)
+    volume.filepath = str(folder / "cloud.vdb")
     return stage.link("Cloud", volume)
 
 
@@ -115,6 +119,31 @@ def test_a_volume_object_moves_and_grows_with_its_object(tmp_path):
     obj.scale = (1, 1, 0.5)
     obj.location = (0.1, 0, 1)
     assert mean(tmp_path) == pytest.approx(math.exp(-0.5 - 0.0625), abs=0.025)
+
+
+def test_a_sequence_shows_each_frame_its_own_file(tmp_path):
+    scene = before_the_sky()
+    densities = 0.2, 0.5, 0.8
+    for number, density in enumerate(densities, 1):
+        write_grid(tmp_path / f"cloud_{number:04d}.vdb", np.full((9, 9, 9), density))
+    volume = bpy.data.volumes.new("Cloud")
+    volume.filepath = str(tmp_path / "cloud_0001.vdb")
+    volume.is_sequence, volume.frame_start, volume.frame_duration = True, 11, len(densities)
+    volume.materials.append(absorbing(1.0, density="GRID"))
+    stage.link("Cloud", volume)
+
+    def seen(frame):
+        scene.frame_set(frame)
+        return mean(tmp_path)
+
+    for frame, density in zip((11, 12, 13), densities, strict=True):
+        assert seen(frame) == pytest.approx(math.exp(-2.25 * density), abs=0.025), f"frame {frame}: {stage.problems()}"
+    volume.frame_offset = 1
+    assert seen(11) == pytest.approx(math.exp(-2.25 * densities[1]), abs=0.025)
+    volume.frame_offset, volume.sequence_mode = 0, "CLIP"
+    assert seen(20) == pytest.approx(1.0, abs=0.025), "before and after a clipped sequence there is nothing"
+    volume.sequence_mode = "REPEAT"
+    assert seen(15) == pytest.approx(math.exp(-2.25 * densities[1]), abs=0.025)
 
 
 def test_a_volume_that_nodes_generate(tmp_path):
