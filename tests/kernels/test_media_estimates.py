@@ -69,6 +69,20 @@ def test_the_blur_of_edges_goes_with_the_radius():
     assert abs(1 - narrow / expected) < 0.4 * (1 - wide / expected)
 
 
+@pytest.mark.parametrize("carry", [Carry.INDIRECT, Carry.ALL])
+def test_a_lamp_whose_sphere_lies_in_the_medium_shines_inwards_too(carry):
+    """A sphere of 0.2 m in fog: photons that only left it outwards would miss the light that paths find inside of it."""
+    with Scene(threads=2) as scene:
+        fill(scene, (-1, -1, -1), (1, 1, 1), scene.add_medium(0.5, 0.8))
+        scene.add_light(Light(type=LightType.POINT, power=60.0, radius=0.2, soft_falloff=0, transform=placed()[:3]))
+        scene.set_camera(**orthographic(0.99, looking_down(10.0)))
+        scene.commit()
+        expected = means_of(scene, samples_per_pass=64, photons_per_pass=0)
+        settings = {"photons_carry": carry, "volume_estimate": VolumeEstimate.BEAM_RADIANCE, "volume_radius": 0.03}
+        found = means_of(scene, samples_per_pass=8, photons_per_pass=40_000, **settings)
+    agrees(carry.name, found, expected, 0.01, 0.012)
+
+
 def fog_between_walls(scene):
     """A lamp over a floor and between two walls, in fog."""
     fill(scene, (-1.4, -1.4, -0.9), (1.4, 1.4, 1.4), scene.add_medium(0.5, 0.9))

@@ -51,7 +51,23 @@ float lamp_reach(const LampModel &lamp, const std::vector<EmissionTarget> &targe
 struct Emission {
   Vec3 origin, direction, normal;
   float factor = 0;  // x the source's spectrum
+  float reach = kInfinity;
 };
+
+// Who is inside of a lamp's sphere sees it shine from all round (sample_round). Photons of that light cross the sphere and end
+// there: what lies beyond sees the side that faces it. This share of a lamp's photons is spent on it where media may be inside.
+constexpr float kInwards = 1.0f / 16;
+
+bool emit_inwards(const LampModel &lamp, Vec2 position, Vec2 direction, Emission &e) {
+  e.direction = sample_sphere(direction);
+  const Vec2 q = sample_disc(position);
+  const Frame frame = Frame::from_z(e.direction);
+  const float half = lamp.radius * safe_sqrt(1 - q.x * q.x - q.y * q.y);
+  e.origin = lamp.position + (frame.x * q.x + frame.y * q.y) * lamp.radius - e.direction * half;
+  e.reach = 2 * half;
+  e.factor = lamp.radiance * kPi * sqr(lamp.radius) * kFourPi / kInwards;
+  return e.factor != 0;
+}
 
 bool emit_round(const LampModel &lamp, const std::vector<EmissionTarget> &targets, Vec2 pick, Vec2 position, Vec2 direction,
                 Emission &e) {
@@ -233,9 +249,14 @@ bool sample_emission(const Scene &scene, const std::vector<EmissionTarget> &targ
   switch (out.source.kind) {
     case SourceKind::Lamp: {
       const LampModel &lamp = lights.lamps[out.source.index];
-      emitted = lamp.is_round()  ? emit_round(lamp, table.targets, pick, position, direction, e)
-                : lamp.is_area() ? emit_area(lamp, table.targets, pick, position, direction, e)
-                                 : emit_sun(scene, lamp, table.targets, pick, position, direction, e);
+      const bool both_ways = lamp.is_round() && lamp.sphere && targets.empty() && scene.any_medium;
+      const bool inwards = both_ways && pick.y < kInwards;
+      if (both_ways && !inwards) pick.y = std::min((pick.y - kInwards) / (1 - kInwards), 0x1.fffffep-1f);
+      emitted = inwards           ? emit_inwards(lamp, position, direction, e)
+                : lamp.is_round() ? emit_round(lamp, table.targets, pick, position, direction, e)
+                : lamp.is_area()  ? emit_area(lamp, table.targets, pick, position, direction, e)
+                                  : emit_sun(scene, lamp, table.targets, pick, position, direction, e);
+      if (both_ways && !inwards) e.factor /= 1 - kInwards;
       spectrum = lamp_spectrum(lights, lamp, w);
       if (lamp.is_round() && !lamp.sphere) out.centre = lamp.position, out.soft_radius = lamp.radius;
       break;
@@ -252,6 +273,7 @@ bool sample_emission(const Scene &scene, const std::vector<EmissionTarget> &targ
   if (!emitted) return false;
   out.ray = {e.origin, e.direction, 0, kInfinity, time};
   out.normal = e.normal;
+  out.reach = e.reach;
   out.flux = spectrum * (e.factor / probability);
   return out.flux.is_finite();
 }

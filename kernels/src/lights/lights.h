@@ -77,6 +77,7 @@ struct EmissionSample {
   SourceId source;
   Vec3 centre;  // with soft_radius: of the lamp
   float soft_radius = 0;
+  float reach = kInfinity;  // how far the light goes before something turns it; finite within a sphere that shines inwards
 };
 // Whether the photon counts at the first thing that it meets. A lamp with soft falloff is a disc that faces whatever it
 // lights, which is less than the sphere that photons leave: those that p's disc could not have sent are dropped, so

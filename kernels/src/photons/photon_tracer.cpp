@@ -91,14 +91,18 @@ class PhotonPath {
     const Hit hit = next_hit(scene_, ray_, kind);
     ++out_.rays;
     media_ = media_that_fill(scene_, entered_, interior_);
+    float t_end = hit.t;
+    if (emitted_.reach < kInfinity && sharp_events_ + rough_events_ == 0)
+      t_end = std::min(t_end, std::max(emitted_.reach - length(ray_.origin - emitted_.ray.origin), 0.0f));
     if (!media_.empty()) {
       trail_.close();
       bool alive = true;
       const uint32_t dimension = bounce_dimension(events, 0);
-      const bool ended_there = any_varies(scene_, media_) ? travel_in_varying_medium(hit.t, dimension, alive)
-                                                          : travel_in_medium(hit.t, dimension, alive);
+      const bool ended_there = any_varies(scene_, media_) ? travel_in_varying_medium(t_end, dimension, alive)
+                                                          : travel_in_medium(t_end, dimension, alive);
       if (ended_there) return alive;
     }
+    if (t_end < hit.t) return ended(End::Escaped);
     if (!hit.valid()) return ended(End::Escaped);
     absorb(scene_, interior_, hit.t, w_, flux_);
     const Material &material = scene_.material_at(hit);
