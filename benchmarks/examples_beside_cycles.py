@@ -27,7 +27,7 @@ SCENES = {
     "rainbow": "the bow",
 }
 VOLUMES = ("cloud_milk_fire",)
-PERCENT, PASSES = 40, 8
+PERCENT, PASSES = 40, 4
 
 
 def compare(name: str, mode: str = "SCENE") -> dict:

@@ -161,28 +161,6 @@ def test_a_volume_that_nodes_generate(tmp_path):
     assert mean(tmp_path) == pytest.approx(math.exp(-1), abs=0.08), stage.problems()
 
 
-@pytest.mark.parametrize(("start", "offset"), [(1, 0), (11, 0), (1, 1)])
-def test_each_frame_of_a_sequence_has_its_own_grid(tmp_path, start, offset):
-    """Frame f shows file f - start + 1 + offset, whose density gives the optical depth 2.25 times itself; before and after the
-    sequence nothing is there (it is clipped)."""
-    scene = before_the_sky()
-    densities = {1: 0.2, 2: 0.5, 3: 1.0}
-    for number, density in densities.items():
-        obj = cloud(tmp_path, np.full((9, 9, 9), density))
-        (tmp_path / "cloud.vdb").rename(tmp_path / f"smoke_{number:04d}.vdb")
-        bpy.data.objects.remove(obj)
-    volume = bpy.data.volumes.new("Sequence")
-    volume.filepath = str(tmp_path / "smoke_0001.vdb")
-    volume.is_sequence, volume.sequence_mode = True, "CLIP"
-    volume.frame_duration, volume.frame_start, volume.frame_offset = 3, start, offset
-    volume.materials.append(absorbing(1.0, density="GRID"))
-    stage.link("Sequence", volume)
-    for frame in range(start, start + 3):
-        scene.frame_set(frame)
-        depth = 2.25 * densities.get(frame - start + 1 + offset, 0.0)
-        assert mean(tmp_path) == pytest.approx(math.exp(-depth), abs=0.025), frame
-
-
 def test_a_missing_grid_is_named_and_is_nothing(tmp_path):
     before_the_sky()
     obj = cloud(tmp_path, np.ones((9, 9, 9)))

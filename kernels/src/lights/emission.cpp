@@ -55,7 +55,8 @@ struct Emission {
 };
 
 // Who is inside of a lamp's sphere sees it shine from all round (sample_round). Photons of that light cross the sphere and end
-// there: what lies beyond sees the side that faces it. This share of a lamp's photons is spent on it where media may be inside.
+// there: what lies beyond sees the side that faces it. A spot shines outwards only. This share of a lamp's photons is spent on
+// it where media may be inside.
 constexpr float kInwards = 1.0f / 16;
 
 bool emit_inwards(const LampModel &lamp, Vec2 position, Vec2 direction, Emission &e) {
@@ -249,7 +250,7 @@ bool sample_emission(const Scene &scene, const std::vector<EmissionTarget> &targ
   switch (out.source.kind) {
     case SourceKind::Lamp: {
       const LampModel &lamp = lights.lamps[out.source.index];
-      const bool both_ways = lamp.is_round() && lamp.sphere && targets.empty() && scene.any_medium;
+      const bool both_ways = lamp.type == OPAL_LIGHT_POINT && lamp.sphere && targets.empty() && scene.any_medium;
       const bool inwards = both_ways && pick.y < kInwards;
       if (both_ways && !inwards) pick.y = std::min((pick.y - kInwards) / (1 - kInwards), 0x1.fffffep-1f);
       emitted = inwards           ? emit_inwards(lamp, position, direction, e)
