@@ -10,7 +10,7 @@ from opal_kernels import droplets
 from opal_kernels.descriptions import Light, LightType, MaterialFlag, Phase, PhaseKind
 from opal_kernels.droplets import Drops
 from opal_kernels.optics import colour
-from opal_kernels.optics.rainbow import droplet, geometric, sun, water
+from opal_kernels.optics.rainbow import drop_shapes, droplet, geometric, sun, water
 from opal_kernels.render import Render
 from opal_kernels.scene import Scene
 from transport_scenes import box
@@ -141,7 +141,7 @@ def test_flattened_drops_lower_the_bows_top_and_leave_its_feet():
     elevation = np.radians(20.0)
     clocks = np.linspace(0, np.pi, 9)
     angles = np.radians(np.linspace(0, 180, 3601))
-    centre = [np.pi - droplet.fold(1.333, 1, 0.975, elevation, float(c)).angle for c in clocks]
+    centre = [np.pi - droplet.fold(1.333, 1, drop_shapes.Spheroid(0.975), elevation, float(c)).angle for c in clocks]
     values = np.array([[[1e-4 + np.exp(-0.5 * ((np.pi - angles - r) / np.radians(0.3)) ** 2)] for r in centre]])
     phase = Phase(kind=PhaseKind.TABLE, wavelengths=[550.0], angles=angles, values=values, elevations=[elevation], clocks=clocks)
     # The camera's -Z is the antisolar direction of a sun 20 degrees high; its X turned so that the row runs towards the bow's clock.
