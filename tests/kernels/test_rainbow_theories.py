@@ -285,7 +285,7 @@ def test_small_and_large_falling_drops_make_a_twinned_bow():
 def test_two_sizes_of_flattened_drops_show_two_bows_at_the_top_and_one_at_the_feet():
     angles, radius = bow_angles(37, 44)
     tops = []
-    for clock in (0.0, np.pi / 2):
+    for clock, elevation in ((0.0, np.radians(10)), (np.pi / 2, 0.0)):  # the feet stand level with the point opposite a low sun
         p = rainbow.phase_function(
             "DROPLET",
             500.0,
@@ -296,7 +296,7 @@ def test_two_sizes_of_flattened_drops_show_two_bows_at_the_top_and_one_at_the_fe
             distribution="TWO_SIZES",
             sizes=16,
             flattening=1.0,
-            sun_elevation_rad=np.radians(10),
+            sun_elevation_rad=elevation,
             clock_rad=clock,
         ).mean(axis=(0, 1))
         peaks = np.flatnonzero((p[1:-1] > p[:-2]) & (p[1:-1] > p[2:])) + 1
