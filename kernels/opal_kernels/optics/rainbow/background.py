@@ -87,4 +87,4 @@ def with_diffraction(angles_rad: np.ndarray, scattered: np.ndarray, sizes: np.nd
 
     `sizes` are size parameters and `share` their part of the drops' cross-section.
     """
-    return (scattered + sum(part * geometric.diffraction(angles_rad, x) for part, x in zip(share, sizes, strict=True))) / 2
+    return (scattered + geometric.diffraction(angles_rad, sizes, share)) / 2

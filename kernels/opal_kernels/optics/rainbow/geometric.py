@@ -14,6 +14,7 @@ import numpy as np
 from opal_kernels.optics import fresnel
 
 _RINGS_END = np.radians(20)
+_AT_ONCE = 200_000  # values of the lobe, so that many sizes need no more memory than few
 
 
 def deviation(sine: np.ndarray, n: float, k: int) -> np.ndarray:
@@ -113,22 +114,28 @@ def energy(n: float, k: int, edges_rad: np.ndarray, rays: int = 20000) -> np.nda
     return result
 
 
-def diffraction(angles_rad: np.ndarray, x: float) -> np.ndarray:
-    """Return the diffraction lobe of a disc (1/sr): x^2/(4 pi) (2 J1(z)/z)^2 ((1 + cos)/2)^2, z = x sin theta.
+def diffraction(angles_rad: np.ndarray, sizes: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Return the diffraction lobe of discs (1/sr) of several size parameters, each with its share of the light.
+
+    A disc's is x^2/(4 pi) (2 J1(z)/z)^2 ((1 + cos)/2)^2, z = x sin theta.
 
     The obliquity and the end at 90 degrees take (1/pi + 1/4)/x of it away (by the mean 4/(pi z^3) of the squared lobe); that is
     given back, so that the integral is 1. Beyond the rings that anything can show the mean stands for them.
     """
     angles = np.asarray(angles_rad, float)
-    z = x * np.sin(angles)
-    squared = np.zeros_like(z)
-    rings = (angles < np.pi / 2) & ((angles < _RINGS_END) | (z < 20))
-    tail = (angles < np.pi / 2) & ~rings
-    near = np.maximum(z[rings], 1e-4)
-    squared[rings] = (2 * _bessel_j1(near) / near) ** 2
-    squared[tail] = 4 / (np.pi * z[tail] ** 3)
-    lost = max(1 - (1 / np.pi + 0.25) / x, 0.1)
-    return x * x / (4 * np.pi) / lost * squared * ((1 + np.cos(angles)) / 2) ** 2
+    sizes, share = np.asarray(sizes, float), np.asarray(share, float)
+    factors = share * sizes**2 / (4 * np.pi) / np.maximum(1 - (1 / np.pi + 0.25) / sizes, 0.1)
+    front = np.flatnonzero(angles < np.pi / 2)
+    total = np.zeros_like(angles)
+    for some in np.array_split(np.arange(sizes.size), -(-sizes.size * angles.size // _AT_ONCE)):
+        z = sizes[some, None] * np.sin(angles[front])
+        rings = (angles[front] < _RINGS_END) | (z < 20)
+        squared = np.empty_like(z)
+        near = np.maximum(z[rings], 1e-4)
+        squared[rings] = (2 * _bessel_j1(near) / near) ** 2
+        squared[~rings] = 4 / (np.pi * z[~rings] ** 3)
+        total[front] += factors[some] @ squared
+    return total * ((1 + np.cos(angles)) / 2) ** 2
 
 
 def _bessel_j1(z: np.ndarray) -> np.ndarray:

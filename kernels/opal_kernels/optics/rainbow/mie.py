@@ -69,6 +69,33 @@ def amplitudes(m, x: float, angles_rad: np.ndarray, threads: int = 0) -> tuple[n
     return np.where(behind, values[:, 2], values[:, 0]), np.where(behind, values[:, 3], values[:, 1])
 
 
+def summed_intensities(m, sizes: np.ndarray, weights: np.ndarray, angles_rad: np.ndarray, threads: int = 0) -> np.ndarray:
+    """Return the sum of weight |S1|^2 and weight |S2|^2 (2, n_angles) over spheres of one index and several size parameters.
+
+    Needs 64 bytes for every sphere and angle.
+
+    Raises
+    ------
+    ValueError
+        If m or a size is out of range.
+    """
+    angles = np.asarray(angles_rad, float)
+    behind = angles > np.pi / 2
+    folded = np.where(behind, np.pi - angles, angles)
+    result = np.empty((2, angles.size))
+    mirrored = np.allclose(angles, np.pi - angles[::-1], rtol=0, atol=1e-12)  # then half of the angles give all
+    asked = folded[: (angles.size + 1) // 2] if mirrored else folded
+    values = _mie_binding.amplitudes(m, sizes, np.cos(np.clip(asked, 0, np.pi / 2)), threads)
+    sums = np.tensordot(np.asarray(weights, float), values.real**2 + values.imag**2, 1).T
+    for j, (front, back) in enumerate(((0, 2), (1, 3))):
+        if mirrored:
+            result[j, : asked.size] = sums[front]
+            result[j, angles.size - asked.size :] = sums[back, ::-1]
+        else:
+            result[j] = np.where(behind, sums[back], sums[front])
+    return result
+
+
 def uniform_intensities(m, x: float, n_angles: int, threads: int = 0) -> np.ndarray:
     """Return |S1|^2 and |S2|^2 (2, n_angles) at equally spaced scattering angles from 0 to pi, both ends included.
 
