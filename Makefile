@@ -25,7 +25,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 # One build at a time in one folder, where flock is to be had.
 LOCK := $(shell command -v flock >/dev/null && echo flock build/.lock)
 
-.PHONY: help environment render test zip bench lint sanitize dev format clean distclean FORCE
+.PHONY: help environment render test zip bench lint style warnings sanitize dev format clean distclean FORCE
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -78,14 +78,18 @@ bench: zip
 
 CXX_FILES = $(shell git ls-files 'kernels/*.cpp' 'kernels/*.h')
 
-lint: | environment
+lint: style warnings
+	@echo "lint: clean"
+
+style: | environment
 	@$(PYTHON) -m ruff format --check --quiet . || { $(PYTHON) -m ruff format --diff --quiet .; exit 1; }
 	@$(PYTHON) -m ruff check --quiet .
 	@$(VENV)/bin/clang-format --dry-run -Werror $(CXX_FILES)
+
+warnings: | environment
 	@mkdir -p build
 	@$(LOCK) sh -ec 'cmake -S kernels -B build/lint -G Ninja -DCMAKE_BUILD_TYPE=Release -DOPAL_LEVELS=v3 -DOPAL_WERROR=ON >build/lint.log \
 	  || { cat build/lint.log; exit 1; }; ninja -C build/lint -j$(JOBS) --quiet'
-	@echo "lint: clean"
 
 format: | environment
 	@$(PYTHON) -m ruff format --quiet .
