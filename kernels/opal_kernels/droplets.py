@@ -137,18 +137,24 @@ def _evaluate(drops: Drops, progress: Progress | None, **place: float) -> np.nda
 def _compute(drops: Drops, progress: Progress | None) -> np.ndarray:
     if not drops.flat:
         return _evaluate(drops, progress).astype(np.float32)
+    from .optics.rainbow import droplet
+
     elevations = drops.elevations or (0.0,)
     clocks = drops.clocks()
     nodes = len(elevations) * len(clocks)
     first = _evaluate(drops, None, sun_elevation_rad=elevations[0], clock_rad=0.0)  # refuses what cannot be
     values = np.empty((2, len(elevations), len(clocks), *first.shape[1:]), np.float32)
-    for number in range(nodes):
-        e, c = divmod(number, len(clocks))
+    values[:, 0, 0] = first
+    try:
+        for number in range(1, nodes):
+            e, c = divmod(number, len(clocks))
 
-        def told(done: float, number: int = number) -> bool | None:
-            return progress((number + done) / nodes) if progress is not None else None
+            def told(done: float, number: int = number) -> bool | None:
+                return progress((number + done) / nodes) if progress is not None else None
 
-        values[:, e, c] = _evaluate(drops, told, sun_elevation_rad=float(elevations[e]), clock_rad=float(clocks[c]))
+            values[:, e, c] = _evaluate(drops, told, sun_elevation_rad=float(elevations[e]), clock_rad=float(clocks[c]))
+    finally:
+        droplet.forget()
     return values
 
 

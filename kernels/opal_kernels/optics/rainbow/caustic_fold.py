@@ -21,13 +21,14 @@ import numpy as np
 
 from opal_kernels.optics.rainbow import geometric
 from opal_kernels.optics.rainbow.airy_function import squares
-from opal_kernels.optics.rainbow.wavefront import Wavefront
+from opal_kernels.optics.rainbow.wavefront import Wavefront, cross
 
 _CLOSE = np.radians(0.4)  # nearer than this to the caustic, fits replace differences
 _FIT_END = np.radians(4.0)
 _DARK, _DARK_POINTS = np.radians(6), 40
 _POINTS = 500
 _NEWTON_STEPS = 12
+_EVEN = 0.2  # least over greatest rate of the path that a single fold has
 _TURNED = 1.2  # rad that a ray may have entered from the half plane it leaves in
 
 
@@ -103,12 +104,14 @@ class Harmonics:
         self.wave = wave
         rows, columns = wave.path.shape
         slope = _slope(wave.direction, rows)
-        stack = np.concatenate([wave.direction, slope, wave.exit, wave.field.real.reshape(6, rows, columns), wave.area[None]])
+        field = wave.field.reshape(6, rows, columns)
+        stack = np.concatenate([wave.direction, slope, wave.exit, field.real, field.imag, wave.area[None]])
         series = np.fft.rfft(stack, axis=-1) / columns
         self._orders = np.arange(series.shape[-1])
         series[..., 1:] *= 2
         series[..., -1] *= 0.5
         self._series = series * np.exp(-1j * self._orders * wave.columns[0])
+        self.met = wave.met.all(axis=1)
         self.plain = int(np.argmin(np.append(wave.plain.all(axis=1), False)))  # rows before the first with total reflection
 
     def across(self, axis: np.ndarray) -> np.ndarray:
@@ -130,14 +133,14 @@ class Harmonics:
         return (self._series[fields] * powers).sum(axis=-1).real
 
 
-_DIRECTION, _ALONG, _EXIT, _FIELD, _AREA = slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 15), 15
+_DIRECTION, _ALONG, _EXIT, _FIELD, _AREA = slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 21), 21
 
 
 @dataclass(frozen=True)
 class Meridian:
     """Rays of one order in one half plane, a row each from the shadow's middle to its edge.
 
-    `entry` is the place in the shadow as a sphere's angle of incidence, `angle` the deviation, unwrapped, `spread` the solid angle per area of the wavefront, `lever` the arm about the drop's
+    The first `plain` rays were nowhere totally reflected. `entry` is the place in the shadow as a sphere's angle of incidence, `angle` the deviation, unwrapped, `spread` the solid angle per area of the wavefront, `lever` the arm about the drop's
     centre, `amplitudes` (2 out: across the plane, in it; 2 in; rows).
     """
 
@@ -146,6 +149,7 @@ class Meridian:
     spread: np.ndarray
     lever: np.ndarray
     amplitudes: np.ndarray
+    plain: int
 
     @classmethod
     def of(cls, harmonics: Harmonics, clock_rad: float, entry_rad: float) -> Meridian | None:
@@ -168,7 +172,8 @@ class Meridian:
             if np.abs(step[alone]).max(initial=0.0) < 1e-11:
                 break
         alone &= (np.abs(step) < 1e-8) & (np.abs(angle - entered) < _TURNED)
-        alone[0] = alone[harmonics.plain :] = False
+        alone &= harmonics.met
+        alone[0] = False
         start = round(entry_rad / (np.pi / 2) * (rows - 1))
         if not alone[start]:
             return None
@@ -177,22 +182,24 @@ class Meridian:
         powers = harmonics.powers(angle)
         fields = harmonics.at(slice(None), powers)
         u, along, exit_, area = fields[_DIRECTION], fields[_ALONG], fields[_EXIT], fields[_AREA]
-        spread = np.cross(along, harmonics.at(_DIRECTION, harmonics.slope(powers)), axis=0)
-        field = fields[_FIELD].reshape(2, 3, rows)
-        plane = np.cross(across[:, None], u, axis=0)
+        spread = cross(along, harmonics.at(_DIRECTION, harmonics.slope(powers)))
+        real, imaginary = fields[_FIELD].reshape(2, 2, 3, rows)
+        field = real + 1j * imaginary  # of totally reflected light
+        plane = cross(across, u)
         amplitudes = np.array([(field * across[:, None]).sum(1), (field * plane).sum(1)]) / np.sqrt(wave.shadow)
         return cls(
             wave.rows[kept] * np.pi / 2,
             np.unwrap(np.arctan2(-(place @ u), frame.sun @ u))[kept],
             np.abs((u * spread).sum(0))[kept] / np.maximum(area[kept], 1e-12),
-            (across @ np.cross(exit_, u, axis=0))[kept],
+            (_along(across, cross(exit_, u)))[kept],
             amplitudes[..., kept],
+            min(kept.stop, harmonics.plain) - kept.start,
         )
 
 
 def of_meridian(rays: Meridian, n: float, k: int) -> Fold | None:
     """Return the fold of order k that a sphere's caustic becomes; None where it has no caustic to that side, or no simple one."""
-    slope = np.diff(rays.angle)
+    slope = np.diff(rays.angle[: max(rays.plain, 0)])
     turns = np.flatnonzero(slope[1:] * slope[:-1] < 0) + 1
     if len(turns) == 0 or not 1 < n < k + 1:
         return None
@@ -229,15 +236,15 @@ def of_meridian(rays: Meridian, n: float, k: int) -> Fold | None:
     path = np.append(2 / 3 * rate[0] * u[0] ** 3, trapezoids).cumsum()
     over = path / u**3
     smooth = _continued(u, np.concatenate([over[None], a + b, (a - b) / u]), fit, close)
+    if not smooth[0].min() > _EVEN * smooth[0].max():  # another fold is near
+        return None
     dark = np.linspace(-_DARK, 0, _DARK_POINTS, endpoint=False)
-    straight = _lines(u, np.concatenate([a + b, (a - b) / u]), fit, dark)
-    steeper = _lines(u, over[None], fit, dark, 3)
-    curves = np.concatenate([np.concatenate([steeper, straight]), smooth], axis=1)
-    power = (curves[1:].reshape(2, 2, 2, -1) ** 2).sum(axis=2)  # sum or difference, out; over what comes in
+    curves = np.concatenate([_lines(u, np.concatenate([over[None], a + b, (a - b) / u]), fit, dark), smooth], axis=1)
+    power = (np.abs(curves[1:]).reshape(2, 2, 2, -1) ** 2).sum(axis=2)  # sum or difference, out; over what comes in
 
     far = np.abs(root) > end
     order = np.argsort(distance[far])
-    single = (grown[..., far] ** 2).sum(axis=1) / np.maximum(np.abs(root[far]), 1e-12)
+    single = (np.abs(grown[..., far]) ** 2).sum(axis=1) / np.maximum(np.abs(root[far]), 1e-12)
     folded = abs((caustic + np.pi) % (2 * np.pi) - np.pi)
     side = 1.0 if abs((float(angle[0]) + np.pi) % (2 * np.pi) - np.pi) > folded else -1.0
     return Fold(
@@ -246,7 +253,7 @@ def of_meridian(rays: Meridian, n: float, k: int) -> Fold | None:
         delta=np.concatenate([dark, u * u]),
         sums=power[0],
         differences=power[1],
-        path=np.clip(curves[0], 1e-6, None),
+        path=np.maximum(curves[0].real, 0.5 * smooth[0, 0].real),
         single_delta=distance[far][order],
         single=single[:, order],
     )

@@ -2,11 +2,17 @@
 """A wavefront traced through a drop that need not be round: the fifth theory, for flattened drops and twinned bows.
 
 After Sadeghi et al., "Physically-Based Simulation of Rainbows", ACM TOG 31(1) (2012): a plane wave is a grid of rays over the shadow of a
-drop of its real shape (`drop_shapes`), each with amplitudes in both polarisations and its path (`wavefront`). Where the wavefront folds
-simply, at a clean caustic, its diffraction is that of the uniform approximation (`caustic_fold`), which that paper's blur by a table stands for.
+drop of its real shape (`drop_shapes`), each with complex amplitudes in both polarisations and its path (`wavefront`). What reaches one
+place of the sky is found wherever on the drop it entered. Of the four families of rays,
 
-A bow is looked at at one place, its clock angle; the rays that arrive there are found wherever on the drop they entered.
-Higher orders are those of a sphere; of these the fifth, whose bow stands in the dark band, is a traced fold as well.
+- reflection outside (R) and transmission (TT) are the power of the patches between neighbouring rays (`patches`);
+- the primary (TRT) and the secondary (TRRT) are, where the wavefront folds simply, the two rays' waves continued through the caustic
+  by the uniform approximation (`caustic_fold`), which that paper's blur by a table stands for;
+- and in large flat drops, where folds meet or the rays of one bow come from more than one place, the patches' waves, summed, with that blur.
+
+Families add as power: fringes between them are finer than the sun's disc and differ from size to size. Higher orders are those of a
+sphere; of these the fifth, whose bow stands in the dark band, is a traced fold as well. The light that passes through is scaled so
+that what one place of the sky shows integrates to 1, as the tracer's tables want it.
 """
 
 from __future__ import annotations
@@ -17,13 +23,16 @@ from functools import lru_cache
 
 import numpy as np
 
-from opal_kernels.optics.rainbow import background, caustic_fold, drop_shapes, geometric, sun, wavefront
+from opal_kernels.optics.rainbow import background, caustic_fold, drop_shapes, geometric, patches, wavefront
 from opal_kernels.optics.rainbow.caustic_fold import Fold
 from opal_kernels.optics.rainbow.drop_shapes import SPHERE, Surface
 
-_ROWS, _COLUMNS, _COLUMNS_ROUND = 385, 12, 3
-_SMEAR = 0.15  # rad
+_ROWS, _COLUMNS, _COLUMNS_ROUND = 289, 12, 3
+_PATCH_ROWS, _PATCH_COLUMNS, _PATCH_INDEX_STEP = 257, 48, 0.01
 _INDEX_STEP = 0.005  # of the traces between which flattened drops are interpolated
+_FLATTEST = 0.93  # height over width under which the folds of a drop are not told apart
+_SKY_ROWS, _SKY_COLUMNS = 257, 24
+_SKY_INDEX_STEP, _SKY_DIAMETER_STEP = 0.02, 0.25  # mm; what is no bow changes slowly with both
 _DIAMETER_DIGITS = 3
 _TRACING = threading.Lock()
 
@@ -58,7 +67,7 @@ class Shape:
 def _harmonics(surface: Surface, n: float, sun_elevation: float, highest: int) -> dict[int, caustic_fold.Harmonics]:
     orders = background.BOWS if highest in background.BOWS else (highest,)
     columns = _COLUMNS_ROUND if surface == SPHERE else _COLUMNS
-    waves = wavefront.trace(surface, n, sun_elevation, orders, _ROWS, columns)
+    waves = wavefront.trace(surface, n, sun_elevation, orders, _ROWS, columns, focal_lines=False)
     return {k: caustic_fold.Harmonics(wave) for k, wave in waves.items()}
 
 
@@ -70,7 +79,7 @@ def fold(n: float, k: int, surface: Surface, sun_elevation: float, clock: float)
 
 @lru_cache(maxsize=1024)
 def _fold(n: float, k: int, surface: Surface, sun_elevation: float, clock: float) -> Fold | None:
-    if not 1 < n < k + 1:
+    if not 1 < n < k + 1 or surface.ratio < _FLATTEST:
         return None
     incidence = float(geometric.caustic_incidence(n, k))
     rays = caustic_fold.Meridian.of(_harmonics(surface, n, sun_elevation, k)[k], clock, incidence)
@@ -88,11 +97,65 @@ def fold_near(n: float, k: int, surface: Surface, sun_elevation: float, clock: f
     nodes = (step * _INDEX_STEP, (step + 1) * _INDEX_STEP)
     pair = [fold(node, k, surface, sun_elevation, clock) for node in nodes]
     if pair[0] is None or pair[1] is None or pair[0].side != pair[1].side:
-        return fold(n, k, surface, sun_elevation, clock)
+        return None
     t = n / _INDEX_STEP - step
-    shifts = [one.angle - float(geometric.fold(geometric.caustic_deviation(node, k))) for one, node in zip(pair, nodes, strict=True)]
-    angle = (1 - t) * shifts[0] + t * shifts[1] + float(geometric.fold(geometric.caustic_deviation(n, k)))
-    return pair[0].mixed(pair[1], t, angle)
+    shifts = [one.angle - _sphere_caustic(node, k) for one, node in zip(pair, nodes, strict=True)]
+    return pair[0].mixed(pair[1], t, (1 - t) * shifts[0] + t * shifts[1] + _sphere_caustic(n, k))
+
+
+def _sphere_caustic(n: float, k: int) -> float:
+    return float(geometric.fold(geometric.caustic_deviation(n, k)))
+
+
+@lru_cache(maxsize=64)
+def _patches(
+    surface: Surface, n: float, sun_elevation: float, orders: tuple[int, ...], rows: int, columns: int
+) -> dict[int, patches.Patches]:
+    waves = wavefront.trace(surface, n, sun_elevation, orders, rows, columns)
+    return {k: patches.Patches(wave) for k, wave in waves.items()}
+
+
+@lru_cache(maxsize=256)
+def _patched_bow(n: float, k: int, surface: Surface, sun_elevation: float, clock: float) -> patches.Bow:
+    return patches.Bow(_patches(surface, n, sun_elevation, background.BOWS, _PATCH_ROWS, _PATCH_COLUMNS)[k], clock)
+
+
+def patched_bow(n: float, k: int, surface: Surface, sun_elevation: float, clock: float) -> tuple[patches.Bow, float]:
+    """Return a bow as the sum of patches, from the trace of the nearest index that wavelengths share, and by how much its angles differ."""
+    node = max(round(n / _PATCH_INDEX_STEP), round(1 / _PATCH_INDEX_STEP) + 1) * _PATCH_INDEX_STEP
+    shift = _sphere_caustic(n, k) - _sphere_caustic(node, k) if 1 < min(n, node) and max(n, node) < k + 1 else 0.0
+    with _TRACING:
+        return _patched_bow(node, k, surface, sun_elevation, clock), shift
+
+
+@lru_cache(maxsize=512)
+def _sky_node(n: float, diameter_mm: float, flattening: float, sun_elevation: float, clock: float) -> np.ndarray:
+    traced = _patches(drop_shapes.falling(diameter_mm, flattening), n, sun_elevation, (-1, 0), _SKY_ROWS, _SKY_COLUMNS)
+    return np.array([traced[k].means(clock, background.EDGES) for k in (-1, 0)])
+
+
+def _sky(n: float, shape: Shape, radii_um: np.ndarray, share: np.ndarray) -> dict[int, np.ndarray]:
+    """Return what drops reflect outside and let through at one place of the sky, by order, (2, 3600) each."""
+    diameters = 2e-3 * radii_um / _SKY_DIAMETER_STEP
+    below = np.floor(diameters).astype(int)
+    weights = np.bincount(below, share * (1 - diameters + below), below.max() + 2)
+    weights += np.bincount(below + 1, share * (diameters - below), below.max() + 2)
+    step = max(int(np.floor(n / _SKY_INDEX_STEP)), round(1 / _SKY_INDEX_STEP) + 1)
+    t = n / _SKY_INDEX_STEP - step
+    total = np.zeros((2, 2, background.CENTRES.size))
+    with _TRACING:
+        for i in np.flatnonzero(weights):
+            for node, part in ((step, 1 - t), (step + 1, t)):
+                place = (_SKY_DIAMETER_STEP * float(i), shape.flattening, shape.sun_elevation_rad, shape.clock_rad)
+                total += weights[i] * part * _sky_node(node * _SKY_INDEX_STEP, *place)
+    return {-1: total[0], 0: total[1]}
+
+
+def forget() -> None:
+    """Let go of traced wavefronts, up to 200 MB of them, once a table is done."""
+    with _TRACING:
+        for cache in (_harmonics, _fold, _patches, _patched_bow, _sky_node):
+            cache.cache_clear()
 
 
 class Drop:
@@ -104,18 +167,24 @@ class Drop:
 
     def _bows(self, angles_rad: np.ndarray, sizes: np.ndarray, share: np.ndarray) -> np.ndarray:
         total = np.zeros((2, len(angles_rad)))
+        bows = [k for k in background.BOWS if 1 < self._n < k + 1]
         for x, part in zip(sizes, share, strict=True):
-            surface = self._shape.surface(x * self._nm / (2000 * np.pi))
-            for k in background.BOWS:  # without a single caustic to that side a large flat drop smears its bow over the sky
-                bow = fold_near(self._n, k, surface, self._shape.sun_elevation_rad, self._shape.clock_rad)
-                total += part * (
-                    background.at(angles_rad, sun.smooth(self._densities[k], _SMEAR)) if bow is None else bow.intensity(angles_rad, x)
-                )
+            place = (self._shape.surface(x * self._nm / (2000 * np.pi)), self._shape.sun_elevation_rad, self._shape.clock_rad)
+            for k in bows:
+                bow = fold_near(self._n, k, *place)
+                if bow is not None:
+                    total += part * bow.intensity(angles_rad, x)
+                else:
+                    summed, shift = patched_bow(self._n, k, *place)
+                    total += part * summed.intensity(angles_rad, x, shift)
             quinary = fold(self._n, background.QUINARY, SPHERE, 0.0, 0.0)
             if quinary is not None:
                 total += part * quinary.intensity(angles_rad, x)
         if quinary is None:
             total += background.at(angles_rad, self._densities[background.QUINARY])
+        for k in background.BOWS:
+            if k not in bows:
+                total += background.at(angles_rad, self._densities[k])
         return total
 
     def scattered(self, angles_rad: np.ndarray, sizes: np.ndarray, share: np.ndarray) -> np.ndarray:
@@ -123,11 +192,23 @@ class Drop:
 
         `sizes` are size parameters, `share` their part of the drops' cross-section (sum 1).
         """
-        if self._shape.flattening > 0:  # one place of the bow does not say what all round it sums to: the rays of a sphere do
-            bows = sum(self._densities[k] for k in background.WAVES)
+        densities = self._densities
+        if self._shape.flattening > 0:
+            densities = densities | _sky(self._n, self._shape, sizes * self._nm / (2000 * np.pi), share)
+        angles = np.asarray(angles_rad, float)
+        seen = self._bows(angles, sizes, share)
+        if _all_round(angles):
+            bows = np.array([np.interp(background.CENTRES, angles, row) for row in seen])
         else:
             bows = self._bows(background.CENTRES, sizes, share)
         bows = bows + background.edge(background.CENTRES, sizes, share)
-        rest = background.closed(self._densities, bows, background.WAVES)
-        grazing = background.edge(angles_rad, sizes, share)
-        return background.at(angles_rad, rest) + self._bows(np.asarray(angles_rad, float), sizes, share) + grazing
+        rest = background.closed(densities, bows, background.WAVES)
+        return background.at(angles, rest) + seen + background.edge(angles, sizes, share)
+
+
+def _all_round(angles: np.ndarray) -> bool:
+    """Whether what is seen at these angles says what all directions get: from 0 to pi in small steps, smallest where bows are."""
+    steps = np.diff(angles)
+    if not (angles.size > 2 and angles[0] == 0 and angles[-1] > np.pi - 1e-6 and (steps > 0).all()):
+        return False
+    return bool(steps.max() < np.radians(0.3) and steps[angles[1:] > np.radians(60.1)].max() < np.radians(0.06))

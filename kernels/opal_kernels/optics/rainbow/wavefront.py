@@ -47,11 +47,13 @@ class Wavefront:
     """One order's rays, (rows, columns); columns start half a step after the upper end of the shadow and go all round.
 
     `field` has (2 incident polarisations: along `up`, along `side`; 3, rows, columns); `area` is the shadow's per row (unit 1) and
-    column (radian); `shadow` all of it; `plain` tells rays that met the surface and were never totally reflected, whose fields are real.
+    column (radian); `shadow` all of it; `met` tells which rays have met the surface each
+    time, `plain` which of these were nowhere totally reflected, so that their fields are real.
     """
 
     order: int
     frame: Frame
+    entry: np.ndarray
     direction: np.ndarray
     exit: np.ndarray
     path: np.ndarray
@@ -59,6 +61,7 @@ class Wavefront:
     focal: np.ndarray
     area: np.ndarray
     shadow: float
+    met: np.ndarray
     plain: np.ndarray
 
     @property
@@ -73,7 +76,9 @@ class Wavefront:
         return (np.arange(count) + 0.5) * 2 * np.pi / count
 
 
-def trace(surface: Surface, n: float, elevation_rad: float, orders: tuple[int, ...], rows: int, columns: int) -> dict[int, Wavefront]:
+def trace(
+    surface: Surface, n: float, elevation_rad: float, orders: tuple[int, ...], rows: int, columns: int, focal_lines: bool = True
+) -> dict[int, Wavefront]:
     """Trace a wavefront through a drop of index `n` under a sun of this height; `columns` of the half beside the vertical plane.
 
     Parameters
@@ -86,6 +91,8 @@ def trace(surface: Surface, n: float, elevation_rad: float, orders: tuple[int, .
         Which to return.
     rows, columns : int
         Rays along the shadow's radius, and round half of it; the other half is its mirror image.
+    focal_lines : bool
+        Count them; what folds alone asks for needs none.
 
     Returns
     -------
@@ -93,35 +100,39 @@ def trace(surface: Surface, n: float, elevation_rad: float, orders: tuple[int, .
     """
     frame = Frame.of(elevation_rad)
     point, area, shadow = _entries(surface, frame, rows, columns)
+    entry = point
     d = np.broadcast_to(frame.sun[:, None, None], point.shape)
     field = np.empty((2, *point.shape), complex)
     field[0], field[1] = frame.up[:, None, None], frame.side[:, None, None]
     path = (frame.sun[:, None, None] * point).sum(0)
     focal = np.zeros(path.shape, int)
-    plain = np.ones(path.shape, bool)
+    met = np.ones(path.shape, bool)
+    plain = met
     found = {}
 
-    def keep(k: int, u: np.ndarray, at: np.ndarray, amplitude: np.ndarray, plain: np.ndarray) -> None:
-        beyond = focal + _focal_lines(at, u, np.full(path.shape, np.inf))
-        found[k] = _mirrored(k, frame, u, at, path - (u * at).sum(0), amplitude, beyond, area, shadow, plain)
+    def keep(k: int, u: np.ndarray, at: np.ndarray, amplitude: np.ndarray) -> None:
+        beyond = focal + _focal_lines(at, u, np.full(path.shape, np.inf)) if focal_lines else focal
+        found[k] = _mirrored(k, frame, entry, u, at, path - (u * at).sum(0), amplitude, beyond, area, shadow, met, plain)
 
     normal = _normal(surface, point)
     reflected, refracted, d_out, d_in = _boundary(d, normal, n, field)
     if -1 in orders:
-        keep(-1, d_out, point, reflected, plain)
+        keep(-1, d_out, point, reflected)
     d, field = d_in, refracted
     for k in range(max(orders) + 1):
         start = point
-        length, met = _across(surface, point, d)
-        focal = focal + _focal_lines(start, d, length)
+        length, arrived = _across(surface, point, d)
+        met = met & arrived
+        if focal_lines:
+            focal = focal + _focal_lines(start, d, length)
         point = start + length * d
         path = path + n * length
         normal = _normal(surface, point)
         d_reflected, leaving, inside, d_out, total = _inner(d, normal, n, field)
-        if k in orders:
-            keep(k, d_out, point, leaving, plain & met & ~total)
-        d, field = d_reflected, inside
         plain = plain & met & ~total
+        if k in orders:
+            keep(k, d_out, point, leaving)
+        d, field = d_reflected, inside
     return found
 
 
@@ -176,10 +187,10 @@ def _across(surface: Surface, point: np.ndarray, d: np.ndarray) -> tuple[np.ndar
 
 def _frame_of_incidence(d: np.ndarray, normal: np.ndarray) -> np.ndarray:
     """Unit vectors across the plane of incidence; any across the ray where it meets the surface head on."""
-    s = np.cross(d, normal, axis=0)
+    s = cross(d, normal)
     size = np.sqrt((s * s).sum(0))
     if (size < 1e-9).any():
-        other = np.cross(d, np.array([0.36, 0.48, 0.8])[:, None, None], axis=0)
+        other = cross(d, np.array([0.36, 0.48, 0.8])[:, None, None])
         s = np.where(size < 1e-9, other, s)
         size = np.sqrt((s * s).sum(0))
     return s / size
@@ -187,7 +198,7 @@ def _frame_of_incidence(d: np.ndarray, normal: np.ndarray) -> np.ndarray:
 
 def _turned(field: np.ndarray, s: np.ndarray, before: np.ndarray, after: np.ndarray, a_s: np.ndarray, a_p: np.ndarray) -> np.ndarray:
     """Components across (s) and in (d x s) the plane of incidence, multiplied and set up again about the new direction."""
-    p_before, p_after = np.cross(before, s, axis=0), np.cross(after, s, axis=0)
+    p_before, p_after = cross(before, s), cross(after, s)
     return ((field * s).sum(1) * a_s)[:, None] * s + ((field * p_before).sum(1) * a_p)[:, None] * p_after
 
 
@@ -212,8 +223,7 @@ def _inner(d: np.ndarray, normal: np.ndarray, n: float, field: np.ndarray):
     leaving = leaving / np.sqrt((leaving * leaving).sum(0))
     s = _frame_of_incidence(d, normal)
     t_s, t_p = (np.sqrt(np.clip(1 - np.abs(r) ** 2, 0, None)) for r in (r_s, r_p))
-    total = sin2_out > 1 + 1e-9
-    return back, _turned(field, s, d, leaving, t_s, t_p), _turned(field, s, d, back, r_s, r_p), leaving, total
+    return back, _turned(field, s, d, leaving, t_s, t_p), _turned(field, s, d, back, r_s, r_p), leaving, sin2_out > 1 + 1e-9
 
 
 def _focal_lines(point: np.ndarray, d: np.ndarray, length: np.ndarray) -> np.ndarray:
@@ -230,7 +240,7 @@ def _focal_lines(point: np.ndarray, d: np.ndarray, length: np.ndarray) -> np.nda
     x1, x2, d1, d2 = along(point), round_(point), along(d), round_(d)
 
     def det(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        return (d * np.cross(a, b, axis=0)).sum(0)
+        return (d * cross(a, b)).sum(0)
 
     c0, c1, c2 = det(x1, x2), det(x1, d2) + det(d1, x2), det(d1, d2)
     root = np.sqrt(np.clip(c1 * c1 - 4 * c0 * c2, 0, None))
@@ -240,7 +250,12 @@ def _focal_lines(point: np.ndarray, d: np.ndarray, length: np.ndarray) -> np.nda
     return (((zeros > 0) & (zeros < length)).sum(0) * (c1 * c1 > 4 * c0 * c2)).astype(int)
 
 
-def _mirrored(k: int, frame: Frame, u, at, path, field, focal, area, shadow: float, plain) -> Wavefront:
+def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Vector products of vectors (3, ...)."""
+    return np.stack(np.broadcast_arrays(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]))
+
+
+def _mirrored(k: int, frame: Frame, entry, u, at, path, field, focal, area, shadow: float, met, plain) -> Wavefront:
     """The whole circle from its half: y is the axis that turns round, and so does the field across it."""
 
     def whole(f: np.ndarray, sign) -> np.ndarray:
@@ -251,6 +266,7 @@ def _mirrored(k: int, frame: Frame, u, at, path, field, focal, area, shadow: flo
     return Wavefront(
         k,
         frame,
+        whole(entry, vector),
         whole(u, vector),
         whole(at, vector),
         whole(path, 1),
@@ -258,5 +274,6 @@ def _mirrored(k: int, frame: Frame, u, at, path, field, focal, area, shadow: flo
         whole(focal, 1),
         whole(area, 1),
         shadow,
+        np.concatenate([met, met[:, ::-1]], axis=1),
         np.concatenate([plain, plain[:, ::-1]], axis=1),
     )
