@@ -225,6 +225,27 @@ def test_a_lamp_inside_a_varying_medium_is_as_bright_as_in_a_homogeneous_one():
     assert np.all(np.abs(ratio - 1) < 4 * np.maximum(error, 0.01)), f"{ratio} ± {error}"
 
 
+def test_what_a_floor_scatters_after_a_medium_is_weighted_as_the_floors():
+    """Camera, medium, floor, sky: with a lamp near by the shares of equiangular distances end at the floor.
+
+    The same box of even density, in closed form and as a grid, on a white floor under lamp and sky; left at the floor, the shares
+    take 5 % of this picture.
+    """
+    found = {}
+    for way in ("closed form", "grid"):
+        with Scene(threads=2) as scene:
+            filled_box(scene, (-1, -1, -1), (1, 1, 1), 0.8, 1.0, way)
+            corners, faces = square(4.0, -1.01)
+            white = scene.add_material(programs.diffuse((0.8, 0.8, 0.8)))
+            scene.add_instances(scene.add_mesh(corners, faces), IDENTITY, [white])
+            scene.add_light(type=0, power=60.0, radius=0.3, transform=looking_down(2.5), soft_falloff=0)
+            scene.set_world(World(programs.emission()))
+            found[way] = mean_and_error(scene, orthographic(0.9, looking_down(2.0)), passes=2)
+    ratio = found["grid"][0] / found["closed form"][0]
+    error = np.hypot(found["grid"][1] / found["grid"][0], found["closed form"][1] / found["closed form"][0])
+    holds(ratio, error, 1.0, 0.004)
+
+
 def test_overlapping_media_add():
     with Scene(threads=2) as scene:
         filled_box(scene, (-1, -1, -1), (1, 1, 1), 0.3)

@@ -202,6 +202,7 @@ void CameraPath::scatter() {
     alive_ = false;
     return;
   }
+  last_ = {};  // nothing of an event in a medium before
   last_.light_was_sampled = !specular;
   last_.event = event;
   last_.p = surface_.sp.p;
