@@ -142,17 +142,18 @@ def _compute(drops: Drops, progress: Progress | None) -> np.ndarray:
     elevations = drops.elevations or (0.0,)
     clocks = drops.clocks()
     nodes = len(elevations) * len(clocks)
-    first = _evaluate(drops, None, sun_elevation_rad=elevations[0], clock_rad=0.0)  # refuses what cannot be
-    values = np.empty((2, len(elevations), len(clocks), *first.shape[1:]), np.float32)
-    values[:, 0, 0] = first
+    values = None
     try:
-        for number in range(1, nodes):
+        for number in range(nodes):
             e, c = divmod(number, len(clocks))
 
             def told(done: float, number: int = number) -> bool | None:
                 return progress((number + done) / nodes) if progress is not None else None
 
-            values[:, e, c] = _evaluate(drops, told, sun_elevation_rad=float(elevations[e]), clock_rad=float(clocks[c]))
+            one = _evaluate(drops, told, sun_elevation_rad=float(elevations[e]), clock_rad=float(clocks[c]))
+            if values is None:
+                values = np.empty((2, len(elevations), len(clocks), *one.shape[1:]), np.float32)
+            values[:, e, c] = one
     finally:
         droplet.forget()
     return values

@@ -145,3 +145,13 @@ def test_a_long_table_stops_at_once():
     with pytest.raises(rainbow.Cancelled):
         droplets.table(Drops("MIE", 2000.0), progress=lambda _done: False)
     assert time.monotonic() - begun < 8.0  # one sphere of a few that were begun
+
+
+def test_a_table_of_flattened_drops_stops_at_once():
+    """Half a minute's table, told to stop at its first sign: within what one drop takes."""
+    import time
+
+    begun = time.monotonic()
+    with pytest.raises(rainbow.Cancelled):
+        droplets.table(Drops("DROPLET", 700.0, 0.1, flattening=1.0, elevations=(0.3,)), progress=lambda _done: False)
+    assert time.monotonic() - begun < 3.0

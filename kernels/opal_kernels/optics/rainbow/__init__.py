@@ -5,7 +5,7 @@ DESCARTES          rays, each wavelength a line at its caustic
 DESCARTES_SAMPLED  rays, each wavelength spread from its caustic
 AIRY               the cubic wavefront: supernumeraries, both polarisations; for radii of 50 um and more
 MIE                Lorenz-Mie theory, exact for spheres
-DROPLET            a traced wavefront, for drops that are not round
+DROPLET            a traced wavefront, for drops in the shape that falling gives them
 
 `phase_function` gives all the same shape and units, so that charts, materials and tests need not know which they hold.
 """
@@ -74,7 +74,7 @@ def phase_function(
         Keep the forward diffraction lobe, half of all light. Without it the rest is doubled: a medium then has extinction
         pi a^2 a drop instead of 2 pi a^2.
     flattening : float
-        `DROPLET` only: 0 for spheres, 1 for the shape that a falling drop of its size has (Beard and Chuang 1987).
+        `DROPLET` only: 0 for spheres, 1 for the shape that a falling drop of its size has (Chuang and Beard 1990), up to 2.
     sun_elevation_rad, clock_rad : float
         `DROPLET` with flattening: height of the sun, and where on the bow, from its top (0) to its feet (pi/2).
     threads : int

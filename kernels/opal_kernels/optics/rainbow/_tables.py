@@ -149,7 +149,7 @@ def _theory(
     if name == "AIRY":
         scattered = airy.Drop(n).scattered
     elif name == "DROPLET":
-        scattered = droplet.Drop(n, shape, nm).scattered
+        scattered = droplet.Drop(n, shape, nm, stopping).scattered
     else:
         table = descartes.solved_table(n) if name == "DESCARTES" else descartes.sampled_table(n)
 
