@@ -140,8 +140,9 @@ _DIRECTION, _ALONG, _EXIT, _FIELD, _AREA = slice(0, 3), slice(3, 6), slice(6, 9)
 class Meridian:
     """Rays of one order in one half plane, a row each from the shadow's middle to its edge.
 
-    The first `plain` rays were nowhere totally reflected. `entry` is the place in the shadow as a sphere's angle of incidence, `angle` the deviation, unwrapped, `spread` the solid angle per area of the wavefront, `lever` the arm about the drop's
-    centre, `amplitudes` (2 out: across the plane, in it; 2 in; rows).
+    `entry` is the place in the shadow as a sphere's angle of incidence, `angle` the deviation, unwrapped, `spread` the solid angle per area of
+    the wavefront, `lever` the arm about the drop's centre, `amplitudes` (2 out: across the plane, in it; 2 in; rows). The first `plain` rays
+    were nowhere totally reflected.
     """
 
     entry: np.ndarray
@@ -236,7 +237,7 @@ def of_meridian(rays: Meridian, n: float, k: int) -> Fold | None:
     path = np.append(2 / 3 * rate[0] * u[0] ** 3, trapezoids).cumsum()
     over = path / u**3
     smooth = _continued(u, np.concatenate([over[None], a + b, (a - b) / u]), fit, close)
-    if not smooth[0].min() > _EVEN * smooth[0].max():  # another fold is near
+    if not smooth[0].real.min() > _EVEN * smooth[0].real.max():  # another fold is near
         return None
     dark = np.linspace(-_DARK, 0, _DARK_POINTS, endpoint=False)
     curves = np.concatenate([_lines(u, np.concatenate([over[None], a + b, (a - b) / u]), fit, dark), smooth], axis=1)

@@ -63,7 +63,7 @@ class Shape:
         return drop_shapes.falling(round(2e-3 * radius_um, _DIAMETER_DIGITS), self.flattening)
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=64)
 def _harmonics(surface: Surface, n: float, sun_elevation: float, highest: int) -> dict[int, caustic_fold.Harmonics]:
     orders = background.BOWS if highest in background.BOWS else (highest,)
     columns = _COLUMNS_ROUND if surface == SPHERE else _COLUMNS
@@ -107,7 +107,7 @@ def _sphere_caustic(n: float, k: int) -> float:
     return float(geometric.fold(geometric.caustic_deviation(n, k)))
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=48)
 def _patches(
     surface: Surface, n: float, sun_elevation: float, orders: tuple[int, ...], rows: int, columns: int
 ) -> dict[int, patches.Patches]:
@@ -115,7 +115,7 @@ def _patches(
     return {k: patches.Patches(wave) for k, wave in waves.items()}
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=64)
 def _patched_bow(n: float, k: int, surface: Surface, sun_elevation: float, clock: float) -> patches.Bow:
     return patches.Bow(_patches(surface, n, sun_elevation, background.BOWS, _PATCH_ROWS, _PATCH_COLUMNS)[k], clock)
 
@@ -128,7 +128,7 @@ def patched_bow(n: float, k: int, surface: Surface, sun_elevation: float, clock:
         return _patched_bow(node, k, surface, sun_elevation, clock), shift
 
 
-@lru_cache(maxsize=512)
+@lru_cache(maxsize=64)
 def _sky_node(n: float, diameter_mm: float, flattening: float, sun_elevation: float, clock: float) -> np.ndarray:
     traced = _patches(drop_shapes.falling(diameter_mm, flattening), n, sun_elevation, (-1, 0), _SKY_ROWS, _SKY_COLUMNS)
     return np.array([traced[k].means(clock, background.EDGES) for k in (-1, 0)])
@@ -141,7 +141,7 @@ def _sky(n: float, shape: Shape, radii_um: np.ndarray, share: np.ndarray) -> dic
     weights = np.bincount(below, share * (1 - diameters + below), below.max() + 2)
     weights += np.bincount(below + 1, share * (diameters - below), below.max() + 2)
     step = max(int(np.floor(n / _SKY_INDEX_STEP)), round(1 / _SKY_INDEX_STEP) + 1)
-    t = n / _SKY_INDEX_STEP - step
+    t = max(n / _SKY_INDEX_STEP - step, 0.0)
     total = np.zeros((2, 2, background.CENTRES.size))
     with _TRACING:
         for i in np.flatnonzero(weights):
@@ -205,8 +205,13 @@ class Drop:
         else:
             bows = self._bows(background.CENTRES, sizes, share)
         bows = bows + background.edge(background.CENTRES, sizes, share)
-        rest = background.closed(densities, bows, background.WAVES)
-        return background.at(angles, rest) + seen + background.edge(angles, sizes, share)
+        seen = seen + background.edge(angles, sizes, share)
+        # A flat drop may turn more light to one place of the sky than a round one has: then all is scaled down.
+        others = sum(density for k, density in densities.items() if k not in background.WAVES and k != 0)
+        excess = np.maximum(((others + bows) * background.SOLID_ANGLES).sum(axis=1, keepdims=True), 1.0)
+        densities = {k: density / excess for k, density in densities.items()}
+        rest = background.closed(densities, bows / excess, background.WAVES)
+        return background.at(angles, rest) + seen / excess
 
 
 def _all_round(angles: np.ndarray) -> bool:
