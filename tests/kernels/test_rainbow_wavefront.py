@@ -54,7 +54,7 @@ def test_what_one_place_of_the_sky_shows_integrates_to_one(clock, radius):
     p = rainbow.phase_function(
         "DROPLET", radius, [550.0], angles, 0.05, sizes=3, flattening=1.0, sun_elevation_rad=0.3, clock_rad=clock, diffraction=False
     )
-    assert np.trapezoid(p.mean(axis=(0, 1)) * np.sin(angles) * 2 * np.pi, angles) == pytest.approx(1, abs=1e-3)
+    assert np.trapezoid(p.mean(axis=(0, 1)) * np.sin(angles) * 2 * np.pi, angles) == pytest.approx(1, abs=1e-5)
 
 
 def test_a_bow_of_summed_patches_keeps_its_light():

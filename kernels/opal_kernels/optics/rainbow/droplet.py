@@ -63,9 +63,8 @@ class Shape:
         return drop_shapes.falling(round(2e-3 * radius_um, _DIAMETER_DIGITS), self.flattening)
 
 
-@lru_cache(maxsize=64)
-def _harmonics(surface: Surface, n: float, sun_elevation: float, highest: int) -> dict[int, caustic_fold.Harmonics]:
-    orders = background.BOWS if highest in background.BOWS else (highest,)
+@lru_cache(maxsize=96)
+def _harmonics(surface: Surface, n: float, sun_elevation: float, orders: tuple[int, ...]) -> dict[int, caustic_fold.Harmonics]:
     columns = _COLUMNS_ROUND if surface == SPHERE else _COLUMNS
     waves = wavefront.trace(surface, n, sun_elevation, orders, _ROWS, columns, focal_lines=False)
     return {k: caustic_fold.Harmonics(wave) for k, wave in waves.items()}
@@ -82,7 +81,9 @@ def _fold(n: float, k: int, surface: Surface, sun_elevation: float, clock: float
     if not 1 < n < k + 1 or surface.ratio < _FLATTEST:
         return None
     incidence = float(geometric.caustic_incidence(n, k))
-    rays = caustic_fold.Meridian.of(_harmonics(surface, n, sun_elevation, k)[k], clock, incidence)
+    rays = caustic_fold.Meridian.of(
+        _harmonics(surface, n, sun_elevation, background.BOWS if k in background.BOWS else (k,))[k], clock, incidence
+    )
     return None if rays is None else caustic_fold.of_meridian(rays, n, k)
 
 
@@ -107,7 +108,7 @@ def _sphere_caustic(n: float, k: int) -> float:
     return float(geometric.fold(geometric.caustic_deviation(n, k)))
 
 
-@lru_cache(maxsize=48)
+@lru_cache(maxsize=64)
 def _patches(
     surface: Surface, n: float, sun_elevation: float, orders: tuple[int, ...], rows: int, columns: int
 ) -> dict[int, patches.Patches]:
@@ -201,7 +202,8 @@ class Drop:
         angles = np.asarray(angles_rad, float)
         seen = self._bows(angles, sizes, share)
         if _all_round(angles):
-            bows = np.array([np.interp(background.CENTRES, angles, row) for row in seen])
+            sine = np.sin(angles)  # as a rule of trapezoids over these angles counts it
+            bows = np.array([np.interp(background.CENTRES, angles, row * sine) for row in seen]) / np.sin(background.CENTRES)
         else:
             bows = self._bows(background.CENTRES, sizes, share)
         bows = bows + background.edge(background.CENTRES, sizes, share)
