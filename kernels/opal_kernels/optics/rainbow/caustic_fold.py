@@ -188,10 +188,14 @@ class Meridian:
         field = real + 1j * imaginary  # of totally reflected light
         plane = cross(across, u)
         amplitudes = np.array([(field * across[:, None]).sum(1), (field * plane).sum(1)]) / np.sqrt(wave.shadow)
+        spread = np.abs((u * spread).sum(0)) / np.maximum(area, 1e-12)
+        # Total reflection has an edge, which no short Fourier series follows: past it rays may not crowd more than before it.
+        edge = max(harmonics.plain, 1)
+        spread[edge:] = np.maximum(spread[edge:], 0.7 * spread[edge - 1])
         return cls(
             wave.rows[kept] * np.pi / 2,
             np.unwrap(np.arctan2(-(place @ u), frame.sun @ u))[kept],
-            np.abs((u * spread).sum(0))[kept] / np.maximum(area[kept], 1e-12),
+            spread[kept],
             (_along(across, cross(exit_, u)))[kept],
             amplitudes[..., kept],
             min(kept.stop, harmonics.plain) - kept.start,
