@@ -8,7 +8,7 @@
 Sub-commands: `cycles` (time to Cycles' error at 64 samples), `examples` (the examples by `opal.compare_cycles`), `caustics` (prism
 and brilliant, time to relative MSE 0.01), `gems` (what dispersion costs, and its chroma), `speed` (rays, photons, building), `start`
 (import, enable), `viewport` (first image, refinements, edits, F12, memory beside Cycles), `media` (the fog box of the report,
-the three volume estimates, the fog box beside Cycles), `rainbows` (Lorenz-Mie tables beside miepython and scattnlay). Run it on a machine that does nothing else.
+the three volume estimates, the fog box beside Cycles), `media-examples` (the three on the examples of media), `rainbows` (Lorenz-Mie tables beside miepython and scattnlay). Run it on a machine that does nothing else.
 """
 
 from __future__ import annotations
@@ -27,7 +27,18 @@ def _inside_blender(what: str, options) -> list[dict]:
     """What needs the installed extension: this script again, inside `tools/with_extension.py`."""
     out = ROOT / "build" / f"bench-{what}.json"
     command = [sys.executable, str(ROOT / "tools" / "with_extension.py"), str(HERE / "render.py"), what, "--inside", "--json", str(out)]
-    subprocess.run([*command, "--repeats", str(options.repeats), "--reference-samples", str(options.reference_samples)], check=True)
+    subprocess.run(
+        [
+            *command,
+            "--repeats",
+            str(options.repeats),
+            "--reference-samples",
+            str(options.reference_samples),
+            "--seconds",
+            str(options.seconds),
+        ],
+        check=True,
+    )
     return json.loads(out.read_text())[what]
 
 
@@ -36,10 +47,10 @@ def main() -> None:
     parser.add_argument(
         "what",
         nargs="*",
-        help="cycles, examples, caustics, gems, media, speed, start, viewport, rainbows; cycles, speed and start when left out",
+        help="cycles, examples, caustics, gems, media, media-examples, speed, start, viewport, rainbows; cycles, speed and start when left out",
     )
     parser.add_argument("--repeats", type=int, default=3)
-    parser.add_argument("--seconds", type=float, default=30.0, help="of each run of caustics and media")
+    parser.add_argument("--seconds", type=float, default=30.0, help="of each run of caustics, media and media-examples")
     parser.add_argument("--reference-seconds", type=float, default=300.0, help="of the references of caustics, made once")
     parser.add_argument("--reference-samples", type=int, default=4096, help="of the references of cycles")
     parser.add_argument("--scenes", nargs="+", default=["prism", "brilliant"], help="of caustics")
@@ -48,7 +59,7 @@ def main() -> None:
     options = parser.parse_args()
     found = {}
     for what in options.what or ["cycles", "speed", "start"]:
-        if what in {"cycles", "examples"} and not options.inside:
+        if what in {"cycles", "examples", "media-examples"} and not options.inside:
             found[what] = _inside_blender(what, options)
         elif what == "cycles":
             import against_cycles
@@ -76,6 +87,11 @@ def main() -> None:
             media.report(found[what])
             if not options.inside:
                 found[what] += _inside_blender(what, options)
+        elif what == "media-examples":
+            import media_examples
+
+            found[what] = media_examples.measure(options.seconds)
+            media_examples.report(found[what])
         elif what == "caustics":
             import caustics
 
@@ -102,7 +118,7 @@ def main() -> None:
             found[what] = gems.measure(options.scenes, options.seconds, options.repeats, options.reference_seconds)
             gems.report(found[what])
         else:
-            parser.error(f"there is no {what}: cycles, examples, caustics, gems, media, speed, start, viewport or rainbows")
+            parser.error(f"there is no {what}: cycles, examples, caustics, gems, media, media-examples, speed, start, viewport or rainbows")
     if options.json:
         options.json.parent.mkdir(parents=True, exist_ok=True)
         options.json.write_text(json.dumps(found, indent=1))

@@ -59,12 +59,12 @@ def build() -> bpy.types.Scene:
         "SPOT",
         (-LAMP_DISTANCE, 0.0, BEAM_HEIGHT),
         (0.0, 0.0, BEAM_HEIGHT),
-        12000.0,
+        45000.0,
         spot_size=2.0 * math.atan(0.75 * SLIT_HEIGHT / distance),
         spot_blend=0.0,
         shadow_soft_size=0.003,
     )
-    _scene.plain_world((0.35, 0.50, 1.0), 0.05)
+    _scene.plain_world((0.30, 0.48, 1.0), 0.10)
     _scene.camera((0.20, -1.45, 1.10), (0.10, -0.16, 0.08), 36.0)
     scene.render.resolution_x, scene.render.resolution_y = 640, 360
     _scene.limit(scene, 64, 10_000)
