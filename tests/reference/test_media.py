@@ -179,7 +179,10 @@ def test_an_openvdb_file(opal, render, kind, tmp_path, tiny):
 
 
 def test_density_by_a_noise_texture(opal, render, tiny):
-    """Evaluated by the kernels at voxels of the mesh's box: the texture's finest lumps are larger than those."""
+    """Evaluated by the kernels at voxels of the mesh's box: the texture's finest lumps are larger than those.
+
+    Means within half a per cent; 24, 96 or 192 voxels change the light that comes through by less than 5e-4.
+    """
     material = filled("noise", ("VolumeScatter", {"Color": (0.8, 0.7, 0.6, 1)}))
     tree = material.node_tree
     noise, times, place_of = (tree.nodes.new(f"ShaderNode{n}") for n in ("TexNoise", "Math", "TexCoord"))
@@ -191,4 +194,4 @@ def test_density_by_a_noise_texture(opal, render, tiny):
     tree.links.new(noise.outputs[0], times.inputs[0])
     tree.links.new(times.outputs[0], scatter.inputs["Density"])
     lit_box(material)
-    check(render)
+    check(render, mean_tolerance=0.005)

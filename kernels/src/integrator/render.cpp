@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrator/render.h"
 
+#include "core/large_pages.h"
+
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "film/spectral_film.h"
@@ -21,7 +23,7 @@ std::vector<T> gathered(std::vector<PhotonChunk> &chunks, std::vector<T> PhotonC
   size_t total = 0;
   for (const PhotonChunk &chunk : chunks) total += (chunk.*part).size();
   std::vector<T> all;
-  all.reserve(total);
+  reserve_large(all, total);
   for (PhotonChunk &chunk : chunks) {
     all.insert(all.end(), (chunk.*part).begin(), (chunk.*part).end());
     chunk.*part = {};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "photons/block_tree.h"
 
+#include "core/large_pages.h"
 #include "core/parallel.h"
 
 #include <array>
@@ -40,7 +41,9 @@ struct Keyed {
 // Stable, least significant digit first. Every chunk counts and then places its own, so threads do not matter.
 void radix_sort(std::vector<Keyed> &items, int threads) {
   constexpr size_t kBuckets = size_t(1) << kDigitBits;
-  std::vector<Keyed> other(items.size());
+  std::vector<Keyed> other;
+  reserve_large(other, items.size());
+  other.resize(items.size());
   std::vector<std::array<uint32_t, kBuckets>> counts(chunks_of(items.size()));
   for (int digit = 0; digit < kDigits; ++digit) {
     const auto bucket = [&](const Keyed &k) { return size_t(k.key >> (digit * kDigitBits)) & (kBuckets - 1); };
@@ -81,7 +84,9 @@ std::vector<uint32_t> BlockTree::build(size_t n, const std::function<Bounds(size
   const auto scale = [](float extent) { return extent > 0 ? float((1 << kAxisBits) - 1) / extent : 0.0f; };
   const Vec3 scales{scale(size.x), scale(size.y), scale(size.z)};
 
-  std::vector<Keyed> keyed(n);
+  std::vector<Keyed> keyed;
+  reserve_large(keyed, n);
+  keyed.resize(n);
   for_chunks(n, threads, [&](size_t, size_t from, size_t to) {
     for (size_t i = from; i < to; ++i) {
       const Vec3 p = (box_of(i).centre() - all.low) * scales;
@@ -110,6 +115,7 @@ std::vector<uint32_t> BlockTree::build(size_t n, const std::function<Bounds(size
       boxes = nodes > 1 ? nodes : 0;
     }
   }
+  reserve_large(nodes_, total);
   nodes_.resize(total);
   for (uint32_t s = 0; s < kSets; ++s) {
     const size_t items = last(s) - first(s);

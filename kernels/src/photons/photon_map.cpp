@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "photons/photon_map.h"
 
+#include "core/large_pages.h"
 #include "core/parallel.h"
 #include "core/sampler.h"
 
@@ -60,6 +61,7 @@ void PhotonMap::build(std::vector<Photon> &&photons, float radius, int threads) 
   for (const uint32_t b : bucket) ++starts_[size_t(b) + 1];
   for (size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
   std::vector<uint32_t> next(starts_.begin(), starts_.end() - 1);
+  reserve_large(photons_, photons.size());
   photons_.resize(photons.size());
   for (size_t i = 0; i < photons.size(); ++i) photons_[next[bucket[i]]++] = photons[i];
 }

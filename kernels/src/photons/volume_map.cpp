@@ -1,12 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "photons/volume_map.h"
 
+#include "core/large_pages.h"
 #include "core/parallel.h"
 #include "core/sampler.h"
 
 #include <cmath>
 
 namespace opal {
+namespace {
+
+// Runs task(k) for k in [0, n), many at a time on each thread.
+template <class Task>
+void in_chunks(size_t n, int threads, const Task &task) {
+  constexpr size_t kChunk = 1 << 16;
+  const std::atomic<bool> never{false};
+  parallel_for(int64_t((n + kChunk - 1) / kChunk), threads, never, [&](int64_t c) {
+    for (size_t k = size_t(c) * kChunk; k < std::min(n, size_t(c + 1) * kChunk); ++k) task(k);
+  });
+}
+
+}  // namespace
 
 uint32_t media_key(const MediumSet &media) {
   uint32_t key = 0;
@@ -45,13 +59,9 @@ void VolumeMap::build(std::vector<VolumePhoton> &&photons, float radius, float s
   const std::vector<uint32_t> order = tree_.build(
       photons.size(), [&](size_t i) { return Bounds{photons[i].position, photons[i].position}; },
       [&](size_t i) { return photons[i].set; }, threads);
+  reserve_large(photons_, photons.size());
   photons_.resize(photons.size());
-  const std::atomic<bool> never{false};
-  constexpr size_t kChunk = 1 << 16;
-  parallel_for(int64_t((order.size() + kChunk - 1) / kChunk), threads, never, [&](int64_t c) {
-    for (size_t k = size_t(c) * kChunk; k < std::min(order.size(), size_t(c + 1) * kChunk); ++k)
-      photons_[k] = photons[order[k]];
-  });
+  in_chunks(order.size(), threads, [&](size_t k) { photons_[k] = photons[order[k]]; });
   radius_ = radius > 0 ? radius : typical_distance(gather) * shrunk;
 }
 
@@ -60,13 +70,14 @@ void VolumeMap::build(std::vector<PhotonBeam> &&beams, float radius, int threads
   if (beams.empty() || !(radius > 0)) return;
   beams_ = std::move(beams);
   radius_ = radius;
-  // Short pieces make tight boxes and a tall tree: sixteen to a beam while that is cheap, one where beams are many.
+  // Short pieces make tight boxes and a tall tree: sixteen to a beam while that is cheap, and where beams are many all but the
+  // longest in one.
   double total = 0;
   for (const PhotonBeam &beam : beams_) total += double(beam.length);
-  const double per_beam = std::clamp(4e6 / double(beams_.size()), 1.0, 16.0);
+  const double per_beam = std::min(4e6 / double(beams_.size()), 16.0);
   const float wanted = std::max(float(total / (double(beams_.size()) * per_beam)), 2 * radius);
   std::vector<Piece> pieces;
-  pieces.reserve(size_t(double(beams_.size()) * (per_beam + 1)));
+  reserve_large(pieces, size_t(double(beams_.size()) * (per_beam + 1)));
   for (uint32_t i = 0; i < beams_.size(); ++i) {
     const uint32_t count = uint32_t(std::clamp(std::ceil(beams_[i].length / wanted), 1.0f, 64.0f));
     for (uint32_t k = 0; k < count; ++k) pieces.push_back({i, uint16_t(k), uint16_t(count)});
@@ -81,8 +92,9 @@ void VolumeMap::build(std::vector<PhotonBeam> &&beams, float radius, int threads
         return box;
       },
       [&](size_t i) { return beams_[pieces[i].beam].set; }, threads);
+  reserve_large(pieces_, pieces.size());
   pieces_.resize(pieces.size());
-  for (size_t k = 0; k < order.size(); ++k) pieces_[k] = pieces[order[k]];
+  in_chunks(order.size(), threads, [&](size_t k) { pieces_[k] = pieces[order[k]]; });
 }
 
 bool VolumeMap::clip(const Vec3 &origin, const Vec3 &direction, uint32_t set, float &t_min, float &t_max) const {
