@@ -86,6 +86,48 @@ LampModel make_lamp(const opal_light_desc &desc) {
   return lamp;
 }
 
+namespace {
+
+// Where a line is within a cone of half angle below 90 degrees. A cone is convex, so this is one interval; in it
+// (x . axis)^2 >= cos^2 x^2 and x . axis >= 0 for x from the apex.
+LitPart within_cone(const Vec3 &from_apex, const Vec3 &direction, const Vec3 &axis, float cosine) {
+  const double o = dot(from_apex, axis), d = dot(direction, axis), c2 = double(cosine) * cosine;
+  const double a = d * d - c2, b = o * d - c2 * dot(from_apex, direction), c = o * o - c2 * length_squared(from_apex);
+  const LitPart none{kInfinity, -kInfinity};
+  const double discriminant = b * b - a * c;
+  if (discriminant < 0) return none;
+  const double root = std::sqrt(discriminant);
+  // The roots of a t^2 + 2 b t + c without cancellation.
+  const double q = -(b + std::copysign(root, b));
+  if (a == 0 || q == 0) return o >= 0 || d > 0 ? LitPart{-kInfinity, kInfinity} : none;
+  const double near = std::min(q / a, c / q), far = std::max(q / a, c / q);
+  if (a > 0) return d > 0 ? LitPart{float(far), kInfinity} : LitPart{-kInfinity, float(near)};
+  return o + d * 0.5 * (near + far) >= 0 ? LitPart{float(near), float(far)} : none;
+}
+
+LitPart both(const LitPart &a, const LitPart &b) { return {std::max(a.begin, b.begin), std::min(a.end, b.end)}; }
+
+}  // namespace
+
+LitPart lit_part(const LampModel &lamp, const Ray &ray, float t_max) {
+  LitPart lit{0, t_max};
+  const Vec3 from_lamp = ray.origin - lamp.position;
+  // A lamp of some size: the cone round all its points has its apex behind it.
+  const auto cone = [&](float size, float cosine) {
+    const float sine = std::sqrt(std::max(1 - sqr(cosine), 0.0f));
+    return within_cone(from_lamp + lamp.axis * (size * (1 + 1e-4f) / sine), ray.direction, lamp.axis, cosine * (1 - 1e-6f));
+  };
+  if (lamp.type == OPAL_LIGHT_SPOT && lamp.cone_omc < 0.999f) return both(lit, cone(lamp.radius, 1 - lamp.cone_omc));
+  if (!lamp.is_area()) return lit;
+  const float o = dot(from_lamp, lamp.axis), d = dot(ray.direction, lamp.axis);
+  if (d > 0) lit.begin = std::max(lit.begin, -o / d);
+  else if (d < 0) lit.end = std::min(lit.end, -o / d);
+  else if (o <= 0) return {kInfinity, -kInfinity};
+  if (!lamp.has_spread || lamp.tan_spread > 50) return lit;
+  const float tangent = std::max(lamp.tan_spread, 1e-3f);
+  return both(lit, cone(std::hypot(lamp.half_u, lamp.half_v), 1 / std::sqrt(1 + sqr(tangent))));
+}
+
 bool sample_lamp(const LampModel &lamp, const Vec3 &p, Vec2 u, LampSample &out) {
   if (lamp.is_round()) return sample_round(lamp, p, u, out);
   if (lamp.is_area()) return sample_area(lamp, p, u, out);

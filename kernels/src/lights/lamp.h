@@ -64,6 +64,13 @@ float lamp_pdf(const LampModel &lamp, const Vec3 &p, const Vec3 &wi, float dista
 // Where a ray meets the lamp beyond t_after and before t_max, what it sees there (scalar radiance) and the normal.
 bool hit_lamp(const LampModel &lamp, const Ray &ray, float t_after, float t_max, float &t, Vec3 &normal, float &radiance);
 
+// The part of a ray within which a lamp's beam may light it: within a spot's cone, before an area lamp's face and within its
+// spread. No lit place is left out; begin > end: none is lit. Suns: all of the ray.
+struct LitPart {
+  float begin = 0, end = kInfinity;
+};
+LitPart lit_part(const LampModel &lamp, const Ray &ray, float t_max);
+
 // Factor of a spot for light leaving in world direction d; 1 for points.
 float spot_attenuation(const LampModel &lamp, const Vec3 &d);
 // Factor of an area lamp's spread for light leaving at `cosine` to its axis: what passes a grid of slats, (tan s - tan a) /

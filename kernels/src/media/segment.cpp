@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "media/segment.h"
 
+#include "lights/lamp.h"
+#include "lights/light_tables.h"
 #include "media/stratified.h"
 
 #include <algorithm>
@@ -86,18 +88,37 @@ Spectrum transmittance_over(const Spectrum &extinction, float t) {
 }
 
 GatherDistance::GatherDistance(const Scene &scene, const Ray &ray, float t_max) : t_max_(t_max) {
-  for (const opal::Lamp &lamp : scene.lamps) {
-    if (lamp.desc.type == OPAL_LIGHT_SUN) continue;
-    if (n_lamps_ == kMostLamps) break;
-    Lamp &l = lamps_[n_lamps_++];
-    const Vec3 to_lamp = lamp.position - ray.origin;
-    l.foot = dot(to_lamp, ray.direction);
-    // A lamp on the ray itself would make the density infinite; its own size is a fair least distance.
-    const float least = 1e-3f * length(to_lamp) + lamp.desc.radius;
-    l.height = std::max(length(to_lamp - ray.direction * l.foot), least);
-    l.theta_a = std::atan2(-l.foot, l.height);
-    l.theta_b = std::isfinite(t_max) ? std::atan2(t_max - l.foot, l.height) : 0.5f * kPi;
+  const std::vector<LampModel> &lamps = scene.lights->lamps;
+  for (size_t i = 0; i < lamps.size() && i < kMostExamined; ++i)
+    if (lamps[i].valid && lamps[i].type != OPAL_LIGHT_SUN) add_lamp(lamps[i], ray);
+  float sum = 0;
+  for (int i = 0; i < n_lamps_; ++i) sum += lamps_[i].share;
+  for (int i = 0; i < n_lamps_; ++i) lamps_[i].share = lerp(lamps_[i].share / sum, 1 / float(n_lamps_), kEvenly);
+}
+
+void GatherDistance::add_lamp(const LampModel &lamp, const Ray &ray) {
+  const LitPart lit = lit_part(lamp, ray, t_max_);
+  if (!(lit.begin < lit.end)) return;
+  Lamp l;
+  l.begin = lit.begin, l.end = lit.end;
+  const Vec3 to_lamp = lamp.position - ray.origin;
+  l.foot = dot(to_lamp, ray.direction);
+  // A lamp on the ray itself would make the density infinite; its own size is a fair least distance.
+  const float least = 1e-3f * length(to_lamp) + std::max({lamp.radius, 0.5f * lamp.half_u, 0.5f * lamp.half_v});
+  l.height = std::max(length(to_lamp - ray.direction * l.foot), least);
+  l.theta_a = std::atan2(lit.begin - l.foot, l.height);
+  l.theta_b = std::isfinite(lit.end) ? std::atan2(lit.end - l.foot, l.height) : 0.5f * kPi;
+  if (!(l.theta_b > l.theta_a)) return;
+  // The integral of intensity over squared distance.
+  l.share = std::abs(lamp.intensity) * lamp.brightness * (l.theta_b - l.theta_a) / l.height;
+  if (!(l.share > 0) || !std::isfinite(l.share)) return;
+  if (n_lamps_ < kMostLamps) {
+    lamps_[n_lamps_++] = l;
+    return;
   }
+  Lamp *least_lamp =
+      std::min_element(lamps_, lamps_ + n_lamps_, [](const Lamp &a, const Lamp &b) { return a.share < b.share; });
+  if (least_lamp->share < l.share) *least_lamp = l;
 }
 
 GatherDistance::GatherDistance(const Scene &scene, const Ray &ray, float t_max, const StratifiedMedia &media)
@@ -112,14 +133,14 @@ float GatherDistance::exponential_density(float t) const {
 }
 
 float GatherDistance::equiangular_density(const Lamp &l, float t) const {
-  const float span = l.theta_b - l.theta_a;
-  return span > 0 ? l.height / (span * (sqr(l.height) + sqr(t - l.foot))) : 0.0f;
+  if (t < l.begin || t > l.end) return 0;
+  return l.height / ((l.theta_b - l.theta_a) * (sqr(l.height) + sqr(t - l.foot)));
 }
 
 float GatherDistance::density(float t) const {
-  float d = share_ > 0 ? share_ * exponential_density(t) : 0.0f;
-  for (int i = 0; i < n_lamps_; ++i) d += (1 - share_) / float(n_lamps_) * equiangular_density(lamps_[i], t);
-  return d;
+  float lamps = 0;
+  for (int i = 0; i < n_lamps_; ++i) lamps += lamps_[i].share * equiangular_density(lamps_[i], t);
+  return (share_ > 0 ? share_ * exponential_density(t) : 0.0f) + (1 - share_) * lamps;
 }
 
 float GatherDistance::sample(float pick, float u, float &density_out) const {
@@ -128,9 +149,11 @@ float GatherDistance::sample(float pick, float u, float &density_out) const {
     t = media_->reach_mean(-std::log1p(-u * collided_));
   } else {
     if (n_lamps_ == 0) return density_out = 0;
-    const int i = std::min(int((pick - share_) / (1 - share_) * float(n_lamps_)), n_lamps_ - 1);
+    float rest = (pick - share_) / (1 - share_);
+    int i = 0;
+    while (i + 1 < n_lamps_ && rest >= lamps_[i].share) rest -= lamps_[i++].share;
     const Lamp &l = lamps_[i];
-    t = l.foot + l.height * std::tan(lerp(l.theta_a, l.theta_b, u));
+    t = clamp(l.foot + l.height * std::tan(lerp(l.theta_a, l.theta_b, u)), l.begin, l.end);
   }
   t = clamp(t, 0.0f, t_max_);
   density_out = density(t);
