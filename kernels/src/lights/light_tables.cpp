@@ -50,6 +50,21 @@ LightBounds bounds_of(const EmissiveTriangle &t) {
   return b;
 }
 
+// The emissive triangles of each instance as one ball; they come instance by instance.
+std::vector<LightTables::Glow> glows_of(const Scene &scene) {
+  std::vector<LightTables::Glow> glows;
+  for (size_t first = 0, last = 0; first < scene.emissive.size(); first = last) {
+    LightBounds all;
+    for (; last < scene.emissive.size() && scene.emissive[last].instance == scene.emissive[first].instance; ++last) {
+      const LightBounds one = bounds_of(scene.emissive[last]);
+      all.box.extend(one.box.low), all.box.extend(one.box.high);
+      all.power += one.power;
+    }
+    glows.push_back({all.box.centre(), all.box.radius(), all.power});
+  }
+  return glows;
+}
+
 // A lamp's own spectrum at luminance 1, seen through a filter of its colour: white glass leaves it as bright as D65 would be.
 SpectralTable filtered_table(const Scene &scene, const SpectralTable &relative, const Vec3 &colour) {
   const float *observer_y = scene.observer_table.data() + kTableSize;
@@ -120,6 +135,7 @@ std::shared_ptr<LightTables> build_light_tables(const Scene &scene) {
   }
   for (uint32_t i = 0; i < scene.emissive.size(); ++i)
     t.near_of_triangle[i] = add_near({SourceKind::Triangle, i}, bounds_of(scene.emissive[i]));
+  t.glows = glows_of(scene);
   if (scene.lights && !scene.world_dirty) t.world = scene.lights->world;
   else t.world.build(scene);
   if (t.world.present() && t.world.brightness() > 0) t.far.push_back({SourceKind::World, 0});

@@ -26,6 +26,13 @@ struct LightTables {
   LightTree tree;
   std::vector<uint32_t> sized;  // lamps that rays can meet
 
+  // Things that glow, each as a ball with what it sends at distance 1: where media near them are looked at.
+  struct Glow {
+    Vec3 centre;
+    float radius = 0, power = 0;
+  };
+  std::vector<Glow> glows;
+
   // Suns by direction, with their shares of all suns' irradiance, and the suns' of theirs and the world's.
   struct Sun {
     Vec3 toward;

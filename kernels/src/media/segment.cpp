@@ -88,29 +88,33 @@ Spectrum transmittance_over(const Spectrum &extinction, float t) {
 }
 
 GatherDistance::GatherDistance(const Scene &scene, const Ray &ray, float t_max) : t_max_(t_max) {
-  const std::vector<LampModel> &lamps = scene.lights->lamps;
-  for (size_t i = 0; i < lamps.size() && i < kMostExamined; ++i)
-    if (lamps[i].valid && lamps[i].type != OPAL_LIGHT_SUN) add_lamp(lamps[i], ray);
+  const LightTables &lights = *scene.lights;
+  for (size_t i = 0; i < lights.lamps.size() && i < kMostExamined; ++i) {
+    const LampModel &lamp = lights.lamps[i];
+    if (!lamp.valid || lamp.type == OPAL_LIGHT_SUN) continue;
+    const float size = std::max({lamp.radius, 0.5f * lamp.half_u, 0.5f * lamp.half_v});
+    add_lamp(ray, lamp.position, size, std::abs(lamp.intensity) * lamp.brightness, lit_part(lamp, ray, t_max));
+  }
+  for (size_t i = 0; i < lights.glows.size() && i < kMostExamined; ++i)
+    add_lamp(ray, lights.glows[i].centre, 0.5f * lights.glows[i].radius, lights.glows[i].power, {0, t_max});
   float sum = 0;
   for (int i = 0; i < n_lamps_; ++i) sum += lamps_[i].share;
   for (int i = 0; i < n_lamps_; ++i) lamps_[i].share = lerp(lamps_[i].share / sum, 1 / float(n_lamps_), kEvenly);
 }
 
-void GatherDistance::add_lamp(const LampModel &lamp, const Ray &ray) {
-  const LitPart lit = lit_part(lamp, ray, t_max_);
+void GatherDistance::add_lamp(const Ray &ray, const Vec3 &centre, float size, float power, const LitPart &lit) {
   if (!(lit.begin < lit.end)) return;
   Lamp l;
   l.begin = lit.begin, l.end = lit.end;
-  const Vec3 to_lamp = lamp.position - ray.origin;
+  const Vec3 to_lamp = centre - ray.origin;
   l.foot = dot(to_lamp, ray.direction);
   // A lamp on the ray itself would make the density infinite; its own size is a fair least distance.
-  const float least = 1e-3f * length(to_lamp) + std::max({lamp.radius, 0.5f * lamp.half_u, 0.5f * lamp.half_v});
-  l.height = std::max(length(to_lamp - ray.direction * l.foot), least);
+  l.height = std::max(length(to_lamp - ray.direction * l.foot), 1e-3f * length(to_lamp) + size);
   l.theta_a = std::atan2(lit.begin - l.foot, l.height);
   l.theta_b = std::isfinite(lit.end) ? std::atan2(lit.end - l.foot, l.height) : 0.5f * kPi;
   if (!(l.theta_b > l.theta_a)) return;
   // The integral of intensity over squared distance.
-  l.share = std::abs(lamp.intensity) * lamp.brightness * (l.theta_b - l.theta_a) / l.height;
+  l.share = power * (l.theta_b - l.theta_a) / l.height;
   if (!(l.share > 0) || !std::isfinite(l.share)) return;
   if (n_lamps_ < kMostLamps) {
     lamps_[n_lamps_++] = l;

@@ -45,11 +45,11 @@ bool any_varies(const Scene &scene, const MediumSet &set);
 Spectrum transmittance_over(const Spectrum &extinction, float t);
 
 class StratifiedMedia;
-struct LampModel;
+struct LitPart;
 
 // Where along a segment direct light is gathered: half by the mean transmittance, truncated to the segment, half
-// equiangular about the finite lamps (Kulla & Fajardo 2012), as one mixture whose density is known at every t. A lamp's
-// places lie where its beam passes, and lamps share them by what they would bring if nothing stood between.
+// equiangular about lamps and things that glow (Kulla & Fajardo 2012), as one mixture whose density is known at every t. A
+// lamp's places lie where its beam passes, and lamps share them by what they would bring if nothing stood between.
 class GatherDistance {
  public:
   // `media` has to outlive it.
@@ -68,7 +68,7 @@ class GatherDistance {
   GatherDistance(const Scene &scene, const Ray &ray, float t_max);
   float exponential_density(float t) const;
   float equiangular_density(const Lamp &lamp, float t) const;
-  void add_lamp(const LampModel &lamp, const Ray &ray);
+  void add_lamp(const Ray &ray, const Vec3 &centre, float size, float power, const LitPart &lit);
 
   static constexpr int kMostLamps = 8, kMostExamined = 64;
   static constexpr float kEvenly = 0.1f;  // shared among the lamps alike: the brightest may stand behind a wall
