@@ -51,7 +51,7 @@ def booth(cut, species: str, left: Mapping[str, object], right: Mapping[str, obj
         _lamp(f"{name} panel", (x, 0.011, 1.6 * HEIGHT), (x, 0.004, 0.0), 0.010, 0.012, spectrum)
         _lamp(f"{name} spot", (x + side * 0.010, -0.014, 1.5 * HEIGHT), (x, 0.004, 0.002), 0.008, 0.0012, spectrum)
     _scene.plain_world((1.0, 1.0, 1.0), 0.0)
-    _scene.camera((0.0, -0.130, 0.075), (0.0, 0.004, 0.0025), 120.0, fstop=32.0)
+    _scene.camera((0.0, -0.130, 0.075), (0.0, 0.004, 0.0025), 160.0, fstop=32.0)
     scene.render.resolution_x, scene.render.resolution_y = 720, 400
     _scene.limit(scene, 128, 200_000)
     return scene

@@ -33,7 +33,7 @@ def look(camera: bpy.types.Object, place: tuple, at: tuple, lens: float = 50.0) 
 
 def gem() -> None:
     """A ruby of 10 mm that lies on its side on a table, under a small lamp."""
-    scene = first_file((400, 250))
+    scene = first_file((640, 400))
     bpy.ops.mesh.primitive_plane_add(size=0.4)
     table = bpy.data.materials.new("Table")
     table.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = (0.55, 0.5, 0.45, 1)
@@ -46,16 +46,16 @@ def gem() -> None:
     stone.location.z = 1e-5 - min((stone.matrix_world @ v.co).z for v in stone.data.vertices)
     lamp = bpy.data.objects["Light"]
     lamp.location = (-0.05, 0.05, 0.08)
-    lamp.data.energy, lamp.data.shadow_soft_size = 0.5, 0.001
+    lamp.data.energy, lamp.data.shadow_soft_size = 1.0, 0.001
     look(bpy.data.objects["Camera"], (0.012, -0.06, 0.036), (0.003, -0.003, 0.002), 70.0)
     bpy.ops.opal.render_preset_apply(name="Caustics")
-    scene.opal.passes, scene.opal.time_limit = 300, 40
+    scene.opal.passes, scene.opal.time_limit = 300, 100
     write(scene, "first_gem")
 
 
 def beam() -> None:
     """A spot through fog in a dark room, past a ball."""
-    scene = first_file((400, 250))
+    scene = first_file((640, 400))
     scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.0
     bpy.ops.mesh.primitive_plane_add(size=20)
     bpy.ops.mesh.primitive_uv_sphere_add(radius=0.45, location=(0.6, 0, 0.9), segments=64, ring_count=32)
@@ -76,7 +76,7 @@ def beam() -> None:
     lamp.data.spot_size, lamp.data.spot_blend = math.radians(12), 0.2
     look(bpy.data.objects["Camera"], (0.0, -7.2, 1.5), (0.1, 0, 1.35), 42.0)
     bpy.ops.opal.render_preset_apply(name="Fog and Beams")
-    scene.opal.passes, scene.opal.time_limit = 200, 60
+    scene.opal.passes, scene.opal.time_limit, scene.opal.denoise = 200, 60, True
     write(scene, "first_beam")
 
 
