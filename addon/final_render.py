@@ -214,7 +214,8 @@ class _FinalRender:
             now = time.monotonic()
             if number + 1 < total and now - self.last_shown > _SHOW_SECONDS:
                 self._show(render, result)
-            if time_limit and now - begun >= time_limit:
+            # Another pass only if that brings the end nearer to the limit.
+            if time_limit and (now - begun) * (1 + 0.5 / (number + 1)) >= time_limit:
                 break
             if threshold and 0 <= render.noise < threshold:
                 break

@@ -193,7 +193,7 @@ class OpalSceneProperties(bpy.types.PropertyGroup):
     )
     time_limit: FloatProperty(
         name="Time Limit",
-        description="After how many seconds the render ends with the pass then running; 0 sets no limit",
+        description="After how many seconds the render ends, to the nearest whole pass; 0 sets no limit",
         default=0.0,
         min=0.0,
         soft_max=36_000.0,

@@ -217,8 +217,8 @@ TOOLTIPS = {
     "genauen Summen des Films, um sie mit anderen Durchgängen desselben Bildes zu vereinen",
     "Where the film is written; # stands for a digit of the frame number. The passes are added to the name": "Wohin der Film geschrieben "
     "wird; # steht für eine Ziffer der Bildnummer. Die Durchgänge werden an den Namen gehängt",
-    "After how many seconds the render ends with the pass then running; 0 sets no limit": "Nach wie vielen Sekunden das Rendern mit dem "
-    "laufenden Durchgang endet; 0 setzt keine Grenze",
+    "After how many seconds the render ends, to the nearest whole pass; 0 sets no limit": "Nach wie vielen Sekunden das Rendern endet, "
+    "auf den nächsten ganzen Durchgang genau; 0 setzt keine Grenze",
     "The render ends once the estimated error of brightness, averaged over the picture and relative to it, falls below this; 0 renders all "
     "passes": "Das Rendern endet, sobald der geschätzte Helligkeitsfehler, über das Bild gemittelt und auf es bezogen, darunter fällt; 0 "
     "rechnet alle Durchgänge",

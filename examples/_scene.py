@@ -232,7 +232,7 @@ def medium(name: str, extinction: float, albedo: Sequence[float] = (1.0, 1.0, 1.
     return material
 
 
-def limit(scene: bpy.types.Scene, passes: int, photons: int, seconds: float = 170.0) -> None:
+def limit(scene: bpy.types.Scene, passes: int, photons: int, seconds: float = 160.0) -> None:
     """Passes and photons a pass of Opal, denoised, and the time after which the render ends at the latest; nothing without the engine."""
     if hasattr(scene, "opal"):
         scene.opal.passes, scene.opal.photons_per_pass, scene.opal.time_limit = passes, photons, seconds
