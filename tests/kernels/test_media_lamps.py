@@ -75,7 +75,7 @@ def expected(strength, x):
     return np.trapezoid(SIGMA / (4 * np.pi) * light, t)
 
 
-@pytest.mark.parametrize("x", [0.0, -4.0], ids=["across the beam", "behind the lamp"])
+@pytest.mark.parametrize("x", [0.0, -4.0], ids=["across_the_beam", "behind_the_lamp"])
 @pytest.mark.parametrize("varies", [False, True], ids=["even", "by a grid"])
 @pytest.mark.parametrize("lamp", LAMPS)
 def test_a_beam_seen_from_its_side_is_as_bright_as_quadrature_says(lamp, varies, x):
