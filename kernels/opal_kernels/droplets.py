@@ -18,12 +18,12 @@ from .descriptions import Phase, PhaseKind
 from .table_store import TableStore
 
 # Belongs to every stored table's key: raise it when a table's numbers change.
-TABLE_VERSION = 7
+TABLE_VERSION = 8
 
 FIRST_NM, LAST_NM, STEP_NM = 380.0, 780.0, 10.0
-FLAT_STEP_NM, _FLAT_SIZES = 25.0, 15
+FLAT_STEP_NM = 25.0
 _COARSE, _FINE, _FINE_FROM = np.radians(0.25), np.radians(0.05), np.radians(60.0)
-_CLOCKS = 25
+_CLOCKS = np.radians([*range(0, 100, 4), *range(108, 181, 12)])  # closest where a bow is seen: its top moves with the place
 _SINGLE_SIZE = 0.02  # a narrower spread leaves ripple that the angles of a table cannot follow
 
 Progress = Callable[[float], bool | None]
@@ -97,7 +97,7 @@ class Drops:
 
     def clocks(self) -> np.ndarray:
         """Places on the bow from its top (0) to below its feet (π)."""
-        return np.linspace(0.0, np.pi, _CLOCKS)
+        return _CLOCKS
 
     def key(self) -> str:
         """Everything that the table's numbers depend on, as text."""
@@ -123,7 +123,6 @@ def _evaluate(drops: Drops, progress: Progress | None, **place: float) -> np.nda
         # Half a cell of the table, for ripple that lies between its angles; a thirtieth of what the sun's disc does to a variance.
         0.5 * _FINE if drops.theory == "MIE" and drops.spread < _SINGLE_SIZE else 0.0,
         distribution=drops.distribution,
-        sizes=_FLAT_SIZES if drops.flat else None,
         celsius=drops.celsius,
         salinity=drops.salinity,
         index=_indices(drops, wavelengths),

@@ -87,6 +87,11 @@ def _squares() -> tuple[np.ndarray, np.ndarray]:
     return tuple(part**2 for part in airy(-np.arange(_TABLE_FIRST, _TABLE_LAST + 2 * _TABLE_STEP, _TABLE_STEP)))
 
 
+def table_of_squares() -> tuple[float, float, np.ndarray, np.ndarray]:
+    """Return what `squares` looks into: the first x, the step, Ai^2(-x) and Ai'^2(-x)."""
+    return (_TABLE_FIRST, _TABLE_STEP, *_squares())
+
+
 def squares(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return (Ai^2(-x), Ai'^2(-x)) from a table, linear in steps of 0.002: the sky asks for millions.
 

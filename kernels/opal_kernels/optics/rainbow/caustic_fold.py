@@ -20,81 +20,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from opal_kernels.optics.rainbow import geometric
-from opal_kernels.optics.rainbow.airy_function import squares
+from opal_kernels.optics.rainbow.folded_bow import DARK, DARK_POINTS, SINGLE_POINTS, Fold, places
 from opal_kernels.optics.rainbow.wavefront import Wavefront, cross
 
 _CLOSE = np.radians(0.4)  # nearer than this to the caustic, fits replace differences
 _FIT_END = np.radians(4.0)
-_DARK, _DARK_POINTS = np.radians(6), 40
-_POINTS = 500
 _NEWTON_STEPS = 12
 _EVEN = 0.2  # least over greatest rate of the path that a single fold has
 _TURNED = 1.2  # rad that a ray may have entered from the half plane it leaves in
-
-
-@dataclass(frozen=True)
-class Fold:
-    """One bow of one drop: smooth functions of the angle from the caustic (delta, into the bright side), per unit of radius.
-
-    `sums` and `differences` hold (2 polarisations, n) |B1 + B2|^2 and |B1 - B2|^2/delta with B = amplitude times delta^(1/4), summed
-    over both incident polarisations (so that the mean of the two is what unpolarised light sees); `path` the path difference over delta^(3/2); `single` the intensity where only one ray arrives.
-    """
-
-    angle: float  # scattering angle of the caustic
-    side: float  # +1 where the bright side has larger scattering angles
-    delta: np.ndarray
-    sums: np.ndarray
-    differences: np.ndarray
-    path: np.ndarray
-    single_delta: np.ndarray
-    single: np.ndarray
-
-    def intensity(self, angles_rad: np.ndarray, x: float) -> np.ndarray:
-        """Return (2, n_angles), d sigma/d Omega over the light on the drop."""
-        result = np.zeros((2, len(angles_rad)))
-        delta = self.side * (np.asarray(angles_rad, float) - self.angle)
-        last = self.delta[-1]
-        alone = delta > last
-        both = np.flatnonzero((delta > -np.radians(25)) & ~alone)
-        delta_both = delta[both]
-        at = np.clip(delta_both, self.delta[0], last)
-        scale = (0.75 * x * np.interp(at, self.delta, self.path)) ** (2 / 3)  # zeta/delta
-        value, slope = squares(scale * delta_both)
-        value, slope = np.pi * np.sqrt(scale) * value, np.pi / np.sqrt(scale) * slope
-        for j in range(2):
-            total, difference = (np.interp(at, self.delta, row[j]) for row in (self.sums, self.differences))
-            result[j, both] = total * value + difference * slope
-            if self.single_delta.size:
-                result[j, alone] = np.interp(delta[alone], self.single_delta, self.single[j])
-        return result
-
-    def mixed(self, other: Fold, t: float, angle: float) -> Fold:
-        """Return what lies a share `t` of the way to another fold of the same side, its caustic at `angle`."""
-        alone = np.linspace(0, 1, 2)
-        if self.single_delta.size and other.single_delta.size:
-            low, high = (pick(pair) for pick, pair in ((max, self._ends(other, 0)), (min, self._ends(other, -1))))
-            alone = np.linspace(low, max(high, low), _POINTS)
-
-        def between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-            return (1 - t) * a + t * b
-
-        def rays(one: Fold) -> np.ndarray:
-            rows = [np.interp(alone, one.single_delta, row) if one.single_delta.size else np.zeros(alone.size) for row in one.single]
-            return np.array(rows)
-
-        return Fold(
-            angle,
-            self.side,
-            between(self.delta, other.delta),
-            between(self.sums, other.sums),
-            between(self.differences, other.differences),
-            between(self.path, other.path),
-            alone,
-            between(rays(self), rays(other)),
-        )
-
-    def _ends(self, other: Fold, i: int) -> tuple[float, float]:
-        return float(self.single_delta[i]), float(other.single_delta[i])
 
 
 class Harmonics:
@@ -227,8 +160,7 @@ def of_meridian(rays: Meridian, n: float, k: int) -> Fold | None:
     if end**2 < 2 * _CLOSE:  # two caustics nearly meet: no two rays to fit
         return None
 
-    u = np.linspace(0, end, _POINTS)[1:]
-    u = u * (0.3 + 0.7 * u / end)  # closer together near the caustic
+    u = end * places()
     inner, outer = _ascending(-root, root < 0, away), _ascending(root, root > 0, away)
     flat = grown.reshape(4, -1)
     a, b = (np.array([np.interp(u, at, row[order]) for row in flat]) for at, order in (outer, inner))
@@ -243,24 +175,24 @@ def of_meridian(rays: Meridian, n: float, k: int) -> Fold | None:
     smooth = _continued(u, np.concatenate([over[None], a + b, (a - b) / u]), fit, close)
     if not smooth[0].real.min() > _EVEN * smooth[0].real.max():  # another fold is near
         return None
-    dark = np.linspace(-_DARK, 0, _DARK_POINTS, endpoint=False)
+    dark = np.linspace(-DARK, 0, DARK_POINTS, endpoint=False)
     curves = np.concatenate([_lines(u, np.concatenate([over[None], a + b, (a - b) / u]), fit, dark), smooth], axis=1)
     power = (np.abs(curves[1:]).reshape(2, 2, 2, -1) ** 2).sum(axis=2)  # sum or difference, out; over what comes in
 
     far = np.abs(root) > end
     order = np.argsort(distance[far])
-    single = (np.abs(grown[..., far]) ** 2).sum(axis=1) / np.maximum(np.abs(root[far]), 1e-12)
+    at, single = distance[far][order], (np.abs(grown[..., far]) ** 2).sum(axis=1) / np.maximum(np.abs(root[far]), 1e-12)
+    alone = (float(at[0]), float(at[-1])) if at.size else (float(end**2), float(end**2) + 1e-6)
+    even = np.linspace(*alone, SINGLE_POINTS)
     folded = abs((caustic + np.pi) % (2 * np.pi) - np.pi)
     side = 1.0 if abs((float(angle[0]) + np.pi) % (2 * np.pi) - np.pi) > folded else -1.0
     return Fold(
         angle=folded,
         side=side,
-        delta=np.concatenate([dark, u * u]),
-        sums=power[0],
-        differences=power[1],
-        path=np.maximum(curves[0].real, 0.5 * smooth[0, 0].real),
-        single_delta=distance[far][order],
-        single=single[:, order],
+        last=float(end**2),
+        curves=np.concatenate([power[0], power[1], np.cbrt(0.75 * np.maximum(curves[:1].real, 0.5 * smooth[0, 0].real)) ** 2]),
+        alone=alone,
+        single=np.array([np.interp(even, at, row[order]) for row in single]) if at.size else np.zeros((2, SINGLE_POINTS)),
     )
 
 

@@ -47,15 +47,7 @@ def quadrature(radius_um: float, spread: float, distribution: str = "LOG_NORMAL"
         return _two_sizes(radius_um, spread, count)
     if spread == 0 or count == 1:
         return np.array([float(radius_um)]), np.ones(1)
-    log_spread = np.sqrt(np.log1p(spread**2))
-    if distribution == "MARSHALL_PALMER":
-        low, high = 0.02, 12.0
-    else:
-        low, high = np.exp(-3.5 * log_spread), np.exp(3.5 * log_spread)
-        if distribution == "NORMAL":
-            low, high = max(1 - 3.5 * spread, 0.02), 1 + 3.5 * spread
-        elif distribution == "GAMMA":  # its lower tail is longer than a log-normal's
-            low = max(low**1.5, 0.01)
+    low, high = _range(spread, distribution)
     edges = np.clip(radius_um * np.geomspace(low, high, count + 1), SMALLEST_UM, LARGEST_UM)
     edges = np.unique(edges)
     radii, steps = np.sqrt(edges[1:] * edges[:-1]), np.diff(edges)
@@ -63,6 +55,7 @@ def quadrature(radius_um: float, spread: float, distribution: str = "LOG_NORMAL"
     if distribution == "NORMAL":
         number = np.exp(-0.5 * ((t - 1) / spread) ** 2)
     elif distribution == "LOG_NORMAL":
+        log_spread = np.sqrt(np.log1p(spread**2))
         number = np.exp(-0.5 * ((np.log(t) + log_spread**2 / 2) / log_spread) ** 2) / t
     elif distribution == "GAMMA":
         shape = 1 / spread**2
@@ -72,6 +65,25 @@ def quadrature(radius_um: float, spread: float, distribution: str = "LOG_NORMAL"
         number = np.exp(-t)
     weights = number * steps
     return radii, weights / weights.sum()
+
+
+def count_for(spread: float, distribution: str, step: float) -> int:
+    """Return how many radii a distribution needs for neighbours to differ by a share `step`."""
+    if not 0 < spread <= LARGEST_SPREAD:
+        return 1 if distribution != "TWO_SIZES" else 2
+    low, high = _range(spread, "LOG_NORMAL" if distribution == "TWO_SIZES" else distribution)
+    return int(np.ceil(np.log(high / low) / step)) * (2 if distribution == "TWO_SIZES" else 1)
+
+
+def _range(spread: float, distribution: str) -> tuple[float, float]:
+    """Least and greatest radius over the mean."""
+    if distribution == "MARSHALL_PALMER":
+        return 0.02, 12.0
+    if distribution == "NORMAL":
+        return max(1 - 3.5 * spread, 0.02), 1 + 3.5 * spread
+    reach = 3.5 * np.sqrt(np.log1p(spread**2))
+    # A gamma distribution's lower tail is longer than a log-normal's.
+    return max(np.exp(-1.5 * reach), 0.01) if distribution == "GAMMA" else np.exp(-reach), np.exp(reach)
 
 
 def _two_sizes(radius_um: float, spread: float, count: int) -> tuple[np.ndarray, np.ndarray]:
