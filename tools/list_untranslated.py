@@ -19,8 +19,8 @@ ROOT = Path(__file__).resolve().parent.parent
 NONE, OPERATOR = "*", "Operator"
 Message = tuple[str, str]
 OWNERS = (bpy.types.Scene, bpy.types.ViewLayer, bpy.types.Material, bpy.types.World, bpy.types.Light, bpy.types.Camera)
-# Names of chemistry, people and standards, and rows of tables with their sources: not translated.
-DYNAMIC = {"species", "preset"}
+# Rows of tables: their names are translated, their tooltips only where they hold no citation.
+TABLES = {"species", "preset"}
 
 
 def groups() -> Iterator[Any]:
@@ -48,10 +48,11 @@ def of_properties(rna: Any) -> Iterator[Message]:
             continue
         yield NONE, prop.name
         yield NONE, prop.description
-        if prop.type == "ENUM" and prop.identifier not in DYNAMIC:
+        if prop.type == "ENUM":
             for item in prop.enum_items_static:
                 yield NONE, item.name
-                yield NONE, item.description
+                if not (prop.identifier in TABLES and item.description.startswith(f"{item.name}. Source: ")):
+                    yield NONE, item.description
 
 
 def settings() -> set[Message]:
@@ -74,6 +75,15 @@ def operators() -> set[Message]:
     return found
 
 
+def tables() -> set[Message]:
+    """Choices that are read from the kernels when a menu opens: species, and cuts with their tooltips."""
+    from importlib import import_module
+
+    species = import_module("bl_ext.user_default.opal.addon.presets").species_items()
+    cuts = import_module("bl_ext.user_default.opal.operators.add_gem").cut_items()
+    return {(NONE, item[1]) for item in (*species, *cuts)} | {(NONE, item[2]) for item in (species[0], *cuts)}
+
+
 def texts() -> set[Message]:
     """Literal texts that layouts draw."""
     found = set()
@@ -89,7 +99,7 @@ def texts() -> set[Message]:
 
 def every_message() -> set[Message]:
     """All of them."""
-    return settings() | panels() | operators() | texts()
+    return settings() | panels() | operators() | tables() | texts()
 
 
 def dictionary(language: str) -> dict[Message, str]:
