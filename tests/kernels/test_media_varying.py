@@ -100,6 +100,17 @@ def test_single_scattering_of_the_sun_in_a_slab(way):
         holds(mean / 0.8, error / 0.8, media.single_scattering_slab(1.0, 1.0, 1.0)[0], 0.0005)
 
 
+@pytest.mark.parametrize("way", WAYS)
+def test_a_veil_under_the_sun_has_light_in_every_sample(way):
+    """Of rays through a depth of 0.05 one in 20 collides: N of those alone would have an error of sqrt(20 / N), here 0.011."""
+    with Scene(threads=2) as scene:
+        filled_box(scene, (-WIDE, -WIDE, 0), (WIDE, WIDE, 1), 0.05, 0.8, way)
+        scene.add_light(type=2, power=1.0, transform=looking_down(5.0))
+        mean, error = mean_and_error(scene, passes=2, size=10, max_depth=0)
+        right = 0.8 * media.single_scattering_slab(0.05, 1.0, 1.0)[0]
+        holds(mean / right, error / right, 1.0, 0.004)
+
+
 def test_a_density_that_grows_linearly():
     """sigma(t) = c t: T = exp(-c d^2 / 2) (PHYSICS §5.17), for three depths of a ramp."""
     n, c = 40, 1.5

@@ -12,6 +12,7 @@
 #include "integrator/path_tracer.h"
 #include "integrator/sun_guide.h"
 #include "integrator/surface.h"
+#include "media/gather_distance.h"
 #include "media/stratified.h"
 #include "photons/colour_trail.h"
 #include "photons/gather.h"
@@ -24,6 +25,8 @@ inline constexpr uint32_t kRouletteStart = 4;  // events before Russian roulette
 inline constexpr uint32_t kGuidedEvents =
     8;  // from the camera on: how many may be led to where the suns' light is scattered from
 inline constexpr float kGuidedPart = 0.25f;
+// Of the chance to meet a medium that varies: a lesser one makes it a thin one.
+inline constexpr float kThin = 0.7f;
 inline constexpr uint32_t kMaxEvents = 32768;  // nothing physical gets there; guards against loops of free passes
 
 // Where the path last scattered, as the light sampler saw it.
@@ -34,12 +37,12 @@ struct LastEvent {
   bool transmissive = false;
   int32_t light_group = -1;
   float pdf = 0;  // hero's, of the direction
-  // In a medium that varies: light was also looked for at equiangular distances, with this density relative to all others', and
-  // the phase function shares the rest with the connection from here.
+  // In a medium that varies: light was also looked for at a distance chosen for it, with this density relative to all others',
+  // and the phase function shares the rest with the connection from here.
   float elsewhere = 0;
   Spectrum phase{0.0f};
 
-  // The share, of light from a direction, that is not left to equiangular distances.
+  // The share, of light from a direction, that is not left to chosen distances.
   Spectrum share(const Spectrum &phase_value, float light_pdf) const {
     Spectrum s(1.0f);
     for (int i = 0; i < kWavelengths; ++i) {
@@ -49,6 +52,8 @@ struct LastEvent {
     return s;
   }
 };
+
+class MeanDepths;
 
 class CameraPath {
  public:
@@ -149,12 +154,12 @@ class CameraPath {
   Spectrum onward_density(const MediumHere &here, const Vec3 &forward, const Vec3 &direction) const;
   // The camera's filter where the camera sees a scattering at first hand. What lights it is taken as unpolarised.
   const Polariser *filter() const { return bounces_ == 0 ? &pass_.polariser : nullptr; }
-  // The same through media that vary: delta tracking, and light looked for where it ends and at equiangular distances.
+  // The same through media that vary: delta tracking, and light looked for where it ends and at a distance chosen for it.
   bool travel_in_varying_medium(float t_end);
   // Direct light at the collision last_.p.
   void connect_from_medium(const MediumHere &here, const Vec3 &forward, uint32_t dimension);
-  // Direct light at a distance chosen for the lamps' sake, however thin the medium is there.
-  void connect_at_equiangular(const GatherDistance &lamps, float t_end, uint32_t dimension);
+  // Direct light at a distance chosen for the lamps' sake, or, in media so thin that most rays meet nothing, for theirs.
+  void connect_at(const GatherDistance<MeanDepths> &chosen, float t_end, uint32_t dimension);
   // Light that a connection brings: `light` is f / p(hero) without the passage and the density of the light sample, `reached`
   // the density of the path up to p, `path` that of going the same way by itself.
   void add_connected(Spectrum light, const LightSample &sample, const Vec3 &p, const Spectrum &reached, const Spectrum &path,

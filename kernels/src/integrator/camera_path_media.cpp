@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Camera paths in media, and photons they look up there. See camera_path.h.
 #include "integrator/camera_path.h"
+#include "lights/light_tables.h"
+#include "media/mean_depths.h"
 
 namespace opal {
 
@@ -123,8 +125,11 @@ Spectrum CameraPath::onward_density(const MediumHere &here, const Vec3 &forward,
 bool CameraPath::travel_in_varying_medium(float t_end) {
   const uint32_t dimension = bounce_dimension(events_, 0);
   const bool may_go_on = may_scatter_again();
-  const GatherDistance lamps = GatherDistance::equiangular(scene_, ray_, t_end);
-  if (!final_ray_ && !lamps.empty()) connect_at_equiangular(lamps, t_end, dimension);
+  const MeanDepths depths(scene_, media_, w_, ray_, t_end);
+  // Collisions find suns and sky often enough unless most rays meet nothing.
+  const bool thin = -std::expm1(-depths.mean_depth(t_end)) < kThin && !scene_.lights->far.empty();
+  const GatherDistance chosen(scene_, ray_, t_end, depths, thin ? 0.5f : 0.0f);
+  if (!final_ray_ && !chosen.empty()) connect_at(chosen, t_end, dimension);
   if (!final_ray_) gather_in_varying(t_end, dimension);
 
   RayMedia media(scene_, media_, w_, ray_);
@@ -170,7 +175,7 @@ bool CameraPath::travel_in_varying_medium(float t_end) {
   last_.p = ray_.origin + forward * t;
   last_.transmissive = true;
   const float straight = here.extinction.average() * std::exp(-depth);
-  if (!lamps.empty()) last_.elsewhere = lamps.density(t) / std::max(straight, 1e-30f);
+  if (!chosen.empty()) last_.elsewhere = chosen.density(t) / std::max(straight, 1e-30f);
   connect_from_medium(here, forward, dimension);
 
   const Vec3 direction = sample_onward(here, forward, dimension, last_.phase);
@@ -213,10 +218,10 @@ void CameraPath::connect_from_medium(const MediumHere &here, const Vec3 &forward
                 sample.dirac ? Spectrum(0.0f) : phase, dimension + kDimLight);
 }
 
-void CameraPath::connect_at_equiangular(const GatherDistance &lamps, float t_end, uint32_t dimension) {
+void CameraPath::connect_at(const GatherDistance<MeanDepths> &chosen, float t_end, uint32_t dimension) {
   float distance_pdf = 0;
   const Vec2 u = sampler_.get2d(dimension + kDimMediumDistance);
-  const float t = lamps.sample(u.x, u.y, distance_pdf);
+  const float t = chosen.sample(u.x, u.y, distance_pdf);
   if (!(distance_pdf > 0) || !(t < t_end)) return;
   RayMedia media(scene_, media_, w_, ray_);
   const MediumHere here = media.at(t);

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "media/segment.h"
 
-#include "lights/lamp.h"
-#include "lights/light_tables.h"
-#include "media/stratified.h"
-
 #include <algorithm>
 
 namespace opal {
@@ -85,83 +81,6 @@ Spectrum transmittance_over(const Spectrum &extinction, float t) {
   Spectrum s = exp(extinction * -t);
   for (int i = 0; i < kWavelengths; ++i) s[i] = extinction[i] > 0 ? s[i] : 1.0f;
   return s;
-}
-
-GatherDistance::GatherDistance(const Scene &scene, const Ray &ray, float t_max) : t_max_(t_max) {
-  const LightTables &lights = *scene.lights;
-  for (size_t i = 0; i < lights.lamps.size() && i < kMostExamined; ++i) {
-    const LampModel &lamp = lights.lamps[i];
-    if (!lamp.valid || lamp.type == OPAL_LIGHT_SUN) continue;
-    const float size = std::max({lamp.radius, 0.5f * lamp.half_u, 0.5f * lamp.half_v});
-    add_lamp(ray, lamp.position, size, std::abs(lamp.intensity) * lamp.brightness, lit_part(lamp, ray, t_max));
-  }
-  for (size_t i = 0; i < lights.glows.size() && i < kMostExamined; ++i)
-    add_lamp(ray, lights.glows[i].centre, 0.5f * lights.glows[i].radius, lights.glows[i].power, {0, t_max});
-  float sum = 0;
-  for (int i = 0; i < n_lamps_; ++i) sum += lamps_[i].share;
-  for (int i = 0; i < n_lamps_; ++i) lamps_[i].share = lerp(lamps_[i].share / sum, 1 / float(n_lamps_), kEvenly);
-}
-
-void GatherDistance::add_lamp(const Ray &ray, const Vec3 &centre, float size, float power, const LitPart &lit) {
-  if (!(lit.begin < lit.end)) return;
-  Lamp l;
-  l.begin = lit.begin, l.end = lit.end;
-  const Vec3 to_lamp = centre - ray.origin;
-  l.foot = dot(to_lamp, ray.direction);
-  // A lamp on the ray itself would make the density infinite; its own size is a fair least distance.
-  l.height = std::max(length(to_lamp - ray.direction * l.foot), 1e-3f * length(to_lamp) + size);
-  l.theta_a = std::atan2(lit.begin - l.foot, l.height);
-  l.theta_b = std::isfinite(lit.end) ? std::atan2(lit.end - l.foot, l.height) : 0.5f * kPi;
-  if (!(l.theta_b > l.theta_a)) return;
-  // The integral of intensity over squared distance.
-  l.share = power * (l.theta_b - l.theta_a) / l.height;
-  if (!(l.share > 0) || !std::isfinite(l.share)) return;
-  if (n_lamps_ < kMostLamps) {
-    lamps_[n_lamps_++] = l;
-    return;
-  }
-  Lamp *least_lamp =
-      std::min_element(lamps_, lamps_ + n_lamps_, [](const Lamp &a, const Lamp &b) { return a.share < b.share; });
-  if (least_lamp->share < l.share) *least_lamp = l;
-}
-
-GatherDistance::GatherDistance(const Scene &scene, const Ray &ray, float t_max, const StratifiedMedia &media)
-    : GatherDistance(scene, ray, t_max) {
-  media_ = &media;
-  collided_ = -std::expm1(-media.mean_depth(t_max));
-  if (collided_ > 0) share_ = n_lamps_ > 0 ? 0.5f : 1.0f;
-}
-
-float GatherDistance::exponential_density(float t) const {
-  return media_->mean_extinction(t) * std::exp(-media_->mean_depth(t)) / collided_;
-}
-
-float GatherDistance::equiangular_density(const Lamp &l, float t) const {
-  if (t < l.begin || t > l.end) return 0;
-  return l.height / ((l.theta_b - l.theta_a) * (sqr(l.height) + sqr(t - l.foot)));
-}
-
-float GatherDistance::density(float t) const {
-  float lamps = 0;
-  for (int i = 0; i < n_lamps_; ++i) lamps += lamps_[i].share * equiangular_density(lamps_[i], t);
-  return (share_ > 0 ? share_ * exponential_density(t) : 0.0f) + (1 - share_) * lamps;
-}
-
-float GatherDistance::sample(float pick, float u, float &density_out) const {
-  float t;
-  if (pick < share_) {
-    t = media_->reach_mean(-std::log1p(-u * collided_));
-  } else {
-    if (n_lamps_ == 0) return density_out = 0;
-    float rest = (pick - share_) / (1 - share_);
-    int i = 0;
-    while (i + 1 < n_lamps_ && rest >= lamps_[i].share) rest -= lamps_[i++].share;
-    const Lamp &l = lamps_[i];
-    t = clamp(l.foot + l.height * std::tan(lerp(l.theta_a, l.theta_b, u)), l.begin, l.end);
-  }
-  t = clamp(t, 0.0f, t_max_);
-  density_out = density(t);
-  return t;
 }
 
 MediumSet media_that_fill(const Scene &scene, const MediumSet &entered, const InteriorStack &interior) {

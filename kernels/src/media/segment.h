@@ -44,41 +44,6 @@ bool any_varies(const Scene &scene, const MediumSet &set);
 // exp(-extinction t); extinction 0 over an infinite distance is 1.
 Spectrum transmittance_over(const Spectrum &extinction, float t);
 
-class StratifiedMedia;
-struct LitPart;
-
-// Where along a segment direct light is gathered: half by the mean transmittance, truncated to the segment, half
-// equiangular about lamps and things that glow (Kulla & Fajardo 2012), as one mixture whose density is known at every t. A
-// lamp's places lie where its beam passes, and lamps share them by what they would bring if nothing stood between.
-class GatherDistance {
- public:
-  // `media` has to outlive it.
-  GatherDistance(const Scene &scene, const Ray &ray, float t_max, const StratifiedMedia &media);
-  // Equiangular alone, for media whose transmittance is not known; the density is 0 everywhere where there is no finite lamp.
-  static GatherDistance equiangular(const Scene &scene, const Ray &ray, float t_max) { return {scene, ray, t_max}; }
-  bool empty() const { return share_ == 0 && n_lamps_ == 0; }
-  float sample(float pick, float u, float &density) const;
-  float density(float t) const;
-
- private:
-  struct Lamp {
-    float begin, end, foot, height, theta_a, theta_b;
-    float share = 0;
-  };
-  GatherDistance(const Scene &scene, const Ray &ray, float t_max);
-  float exponential_density(float t) const;
-  float equiangular_density(const Lamp &lamp, float t) const;
-  void add_lamp(const Ray &ray, const Vec3 &centre, float size, float power, const LitPart &lit);
-
-  static constexpr int kMostLamps = 8, kMostExamined = 64;
-  static constexpr float kEvenly = 0.1f;  // shared among the lamps alike: the brightest may stand behind a wall
-  Lamp lamps_[kMostLamps];
-  int n_lamps_ = 0;
-  const StratifiedMedia *media_ = nullptr;
-  float t_max_, share_ = 0;  // share_: of the exponential part
-  float collided_ = 0;       // the mean transmittance's complement over the segment
-};
-
 // Follows the media through boundaries met by a ray.
 inline void cross_medium(const Material &material, const ShadingPoint &sp, MediumSet &set) {
   if (material.medium < 0) return;
