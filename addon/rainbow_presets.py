@@ -45,7 +45,7 @@ PRESETS: dict[str, tuple[str, str, dict[str, Any]]] = {
     "TWINNED": (
         "Twinned Bow",
         "Small round and larger flattened drops together: two bows that part at the top",
-        {"theory": "DROPLET", "radius": 0.5, "distribution": "TWO_SIZES", "spread": 0.06, "extinction": 0.003, "flattening": 1.0},
+        {"theory": "DROPLET", "radius": 0.5, "distribution": "TWO_SIZES", "spread": 0.03, "extinction": 0.003, "flattening": 1.0},
     ),
     "SEA_SPRAY": (
         "Sea Spray",

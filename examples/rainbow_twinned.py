@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A twinned bow: small round and larger flattened drops in one shower make two bows that part at the top and join at the feet.
 
-By the traced wavefront (Sadeghi et al. 2012) of drops in the shape that falling gives them; the table takes half a minute when it is first computed.
+By the traced wavefront (Sadeghi et al. 2012) of drops in the shape that falling gives them; the table takes about ten seconds when it is first computed.
 """
 
 import math

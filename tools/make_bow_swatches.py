@@ -16,7 +16,7 @@ DROPS = {
     "SHOWER": (171, 1.0),
     "FOGBOW": (10, 0.1),
     "CORONA": (8, 0.05),
-    "TWINNED": (500, 0.06),
+    "TWINNED": (500, 0.03),
     "SEA_SPRAY": (200, 0.1),
     "GLASS_BEADS": (300, 0.05),
 }

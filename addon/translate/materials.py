@@ -178,7 +178,7 @@ class Materials:
             else:
                 medium = self._rain.add(settings.rainbow)
         except ValueError as error:
-            self._report.add(name, f"{error} The body is rendered empty.", lost=True)
+            self._report.add(name, f"{str(error).rstrip('.')}; the body is rendered empty.", lost=True)
             medium = -1
         return {"flags": MaterialFlag.NO_SURFACE, "medium": medium}
 

@@ -174,7 +174,7 @@ class SceneBuilder:
         try:
             self.scene.set_world_medium(self.rain.add_world(world))
         except ValueError as error:
-            self._report.add(Named(world), f"{error} The world is rendered empty.", lost=True)
+            self._report.add(Named(world), f"{str(error).rstrip('.')}; the world is rendered empty.", lost=True)
 
     def _read_mesh(self, group: Group, needs: MeshNeeds, snapshot: Snapshot, body: Body | None) -> int:
         key = group.mesh.as_pointer()

@@ -7,7 +7,7 @@ One drop of a quarter of a millimetre has a forward peak ten million times the b
 degrees can hold. Under the sun's disc and over sizes that differ by 5 per cent the ripple averages away, and the bow stands out.
 """
 
-import sys
+import argparse
 from pathlib import Path
 
 import numpy as np
@@ -45,7 +45,9 @@ def draw() -> np.ndarray:
 
 
 if __name__ == "__main__":
-    path = Path(sys.argv[1] if len(sys.argv) > 1 else "renders/mie_logarithmic.png")
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--output", type=Path, default=Path("renders/mie_logarithmic.png"))
+    path = parser.parse_args().output
     path.parent.mkdir(parents=True, exist_ok=True)
     png.write(path, encode(draw()))
     print(path)

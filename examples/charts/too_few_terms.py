@@ -6,7 +6,7 @@
 The series converges everywhere, but each supernumerary arc needs more terms than the last; with too few the intensity leaves the page.
 """
 
-import sys
+import argparse
 from pathlib import Path
 
 import numpy as np
@@ -36,7 +36,9 @@ def draw() -> np.ndarray:
 
 
 if __name__ == "__main__":
-    path = Path(sys.argv[1] if len(sys.argv) > 1 else "renders/too_few_terms.png")
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--output", type=Path, default=Path("renders/too_few_terms.png"))
+    path = parser.parse_args().output
     path.parent.mkdir(parents=True, exist_ok=True)
     png.write(path, encode(draw()))
     print(path)

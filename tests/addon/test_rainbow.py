@@ -120,6 +120,7 @@ def test_impossible_drops_are_named_and_the_picture_comes(tmp_path, name, value,
     picture = stage.render(tmp_path)
     assert picture.shape == (9, 16, 4) and np.isfinite(picture).all()
     assert len(stage.problems()) == 1 and said in stage.problems()[0] and stage.problems()[0].startswith("Rain: ")
+    assert stage.problems()[0].endswith("; the body is rendered empty.")
 
 
 @pytest.mark.parametrize(

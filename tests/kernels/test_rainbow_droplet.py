@@ -40,6 +40,21 @@ def test_round_traced_drops_shine_as_lorenz_mie_says(micrometres, largest):
     assert np.abs(ratio - 1)[inside[12:-12]].max() < 0.03, "the primary itself"
 
 
+@pytest.mark.parametrize("radius", [100.0, 250.0, 400.0])
+def test_each_polarisation_of_both_bows_is_lorenz_mies(radius):
+    """Means over the primary, 137 to 143 degrees, and the secondary, 121 to 129: within 3 per cent, the secondary's parallel light within 6."""
+    from opal_kernels.optics import rainbow
+
+    primary, secondary = np.radians(np.arange(137.0, 143.0, 0.05)), np.radians(np.arange(121.0, 129.3, 0.05))
+    angles = np.concatenate([secondary, primary])
+    p = {t: rainbow.phase_function(t, radius, [550.0], angles, 0.05)[:, 0] for t in ("MIE", "AIRY", "DROPLET")}
+    for theory in ("AIRY", "DROPLET"):
+        for part, parallel in ((slice(secondary.size), 0.06), (slice(secondary.size, None), 0.03)):
+            ours, exact = (p[t][:, part].mean(axis=1) for t in (theory, "MIE"))
+            assert ours[0] == pytest.approx(exact[0], rel=0.03)
+            assert ours[1] == pytest.approx(exact[1], rel=parallel)
+
+
 def test_the_fifth_bow_shines_into_the_dark_band():
     """Beside the secondary, half a degree outside of the dark band's middle, Descartes' pile of the fifth order's rays is not there."""
     angles = np.radians(180 - np.arange(49.5, 51.0, 0.02))
