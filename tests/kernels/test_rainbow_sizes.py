@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from opal_kernels import droplets
 from opal_kernels.optics import rainbow
-from opal_kernels.optics.rainbow import _tables, airy_function, drop_shapes, droplet
+from opal_kernels.optics.rainbow import _tables, airy, airy_function, drop_shapes, droplet
 from opal_kernels.optics.rainbow.folded_bow import Fold, sum_of_sizes
 
 SUN = np.radians(0.2666)
@@ -77,6 +77,13 @@ def test_many_sizes_at_once_are_the_uniform_approximation_of_each():
             expected[j] += part * np.pi * (curve[j] * np.sqrt(scale) * value**2 + curve[2 + j] / np.sqrt(scale) * slope**2)
     summed = sum_of_sizes(folds, place, caustics, x, share, angles)
     np.testing.assert_allclose(summed, expected, atol=2e-3 * expected.max())
+
+
+@pytest.mark.parametrize("k", [1, 2, 5])
+def test_airys_bow_as_a_fold_is_airys_bow(k):
+    angles = np.radians(np.linspace(100.0, 170.0, 3000))
+    expected = airy.bow(angles, 1.334, 2856.0, k)
+    np.testing.assert_allclose(airy.as_fold(1.334, k).intensity(angles, 2856.0), expected, atol=1e-9 * expected.max())
 
 
 @pytest.mark.parametrize("elevation", [0.05, 0.31])

@@ -24,6 +24,7 @@ import numpy as np
 
 from opal_kernels.optics.rainbow import background, geometric
 from opal_kernels.optics.rainbow.airy_function import squares
+from opal_kernels.optics.rainbow.folded_bow import DARK_POINTS, POINTS, SINGLE_POINTS, Fold, sum_of_sizes
 
 # Over which distance from the caustic Airy's intensity gives way to that of rays.
 _BLEND = {1: (np.radians(14), np.radians(24)), 2: (np.radians(6), np.radians(14)), 5: (np.radians(2), np.radians(6))}
@@ -58,6 +59,18 @@ def bow(angles_rad: np.ndarray, n: float, x: float, k: int) -> np.ndarray:
     ai2, slope2 = squares(delta * x ** (2 / 3) / h ** (1 / 3))
     scale = 2 * sine * x ** (1 / 3) * h ** (-2 / 3) / np.sin(geometric.fold(d_k))
     return scale * (t0[:, None] ** 2 * ai2 + t1[:, None] ** 2 * (x * h) ** (-2 / 3) * slope2)
+
+
+@lru_cache(maxsize=512)
+def as_fold(n: float, k: int) -> Fold:
+    """Return Airy's bow as a fold whose curves are constants, so that many sizes are summed at once: its `intensity` is `bow`."""
+    d_k, sine, h, t0, t1 = caustic(n, k)
+    scale = h ** (-1 / 3)
+    factor = 2 * sine * h ** (-2 / 3) / (np.pi * np.sin(geometric.fold(d_k)))
+    sums, differences = factor * t0**2 / np.sqrt(scale), factor * t1**2 * np.sqrt(scale) * h ** (-2 / 3)
+    curves = np.repeat(np.concatenate([sums, differences, [scale]])[:, None], DARK_POINTS + POINTS, axis=1)
+    rising = int(d_k // np.pi) % 2 == 0
+    return Fold(float(geometric.fold(d_k)), 1.0 if rising else -1.0, np.pi, curves, (np.pi, 2 * np.pi), np.zeros((2, SINGLE_POINTS)))
 
 
 def _delta(angles_rad: np.ndarray, d_k: float) -> np.ndarray:
@@ -113,7 +126,9 @@ class Drop:
             near = np.flatnonzero((delta > -np.radians(25)) & (delta < _BLEND[k][1]))
             if near.size == 0:
                 continue
-            intensity = sum(part * bow(angles_rad[near], self._n, x, k) for part, x in zip(share, sizes, strict=True))
+            one = as_fold(self._n, k)
+            at, angles = np.zeros(sizes.size), np.full(sizes.size, one.angle)
+            intensity = sum_of_sizes([one], at, angles, sizes, share, angles_rad[near])
             grid, ratio = ray_ratio(self._n, k)
             intensity *= [np.interp(delta[near], grid, row, left=1.0) for row in ratio]
             total[:, near] += _share(angles_rad[near], self._n, k) * intensity
