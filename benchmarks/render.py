@@ -8,7 +8,8 @@
 Sub-commands: `cycles` (time to Cycles' error at 64 samples), `examples` (the examples by `opal.compare_cycles`), `caustics` (prism
 and brilliant, time to relative MSE 0.01), `gems` (what dispersion costs, and its chroma), `speed` (rays, photons, building), `start`
 (import, enable), `viewport` (first image, refinements, edits, F12, memory beside Cycles), `media` (the fog box of the report,
-the three volume estimates, the fog box beside Cycles), `media-examples` (the three on the examples of media), `rainbows` (Lorenz-Mie tables beside miepython and scattnlay). Run it on a machine that does nothing else.
+the three volume estimates, the fog box beside Cycles), `media-examples` (the three on the examples of media), `clouds`
+(a cloud of noise beside Cycles), `rainbows` (Lorenz-Mie tables beside miepython and scattnlay). Run it on a machine that does nothing else.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ def main() -> None:
     parser.add_argument(
         "what",
         nargs="*",
-        help="cycles, examples, caustics, gems, media, media-examples, speed, start, viewport, rainbows; cycles, speed and start when left out",
+        help="cycles, examples, caustics, gems, media, media-examples, clouds, speed, start, viewport, rainbows; cycles, speed and start when left out",
     )
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--seconds", type=float, default=30.0, help="of each run of caustics, media and media-examples")
@@ -59,7 +60,7 @@ def main() -> None:
     options = parser.parse_args()
     found = {}
     for what in options.what or ["cycles", "speed", "start"]:
-        if what in {"cycles", "examples", "media-examples"} and not options.inside:
+        if what in {"cycles", "examples", "media-examples", "clouds"} and not options.inside:
             found[what] = _inside_blender(what, options)
         elif what == "cycles":
             import against_cycles
@@ -92,6 +93,11 @@ def main() -> None:
 
             found[what] = media_examples.measure(options.seconds)
             media_examples.report(found[what])
+        elif what == "clouds":
+            import clouds
+
+            found[what] = clouds.measure()
+            clouds.report(found[what])
         elif what == "caustics":
             import caustics
 

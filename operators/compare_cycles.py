@@ -68,6 +68,9 @@ class OPAL_OT_compare_cycles(bpy.types.Operator):
         try:
             edited = comparison.bring_twins_up_to_date()
             with Changed() as changed:
+                if not self.use_scene_settings:
+                    # A denoiser shifts means: what is compared is what the engines have rendered.
+                    changed.set(context.scene.opal, denoise=False)
                 if self.equal == "SAMPLES":
                     changed.set(context.scene.opal, use_adaptive_sampling=False)
                 if self.mode == "VOLUMES":

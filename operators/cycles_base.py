@@ -86,18 +86,23 @@ def _add_to_world(world: Any, plan: Any) -> _Added:
     return added
 
 
+_MOST_BOUNCES = 1024  # that Cycles takes
+
+
 def settings(scene: Any) -> dict[str, Any]:
     """Settings of Cycles with which light is what Opal's is: no caustics, no clamping, as many bounces."""
     opal = scene.opal
-    depth = min(1024, opal.max_depth)
+    depth = min(_MOST_BOUNCES, opal.max_depth)
+    # Opal's depth counts bounces off rough surfaces; gems, mirrors and media end by chance.
+    endless = _MOST_BOUNCES if depth else 0
     return {
         "caustics_reflective": False,
         "caustics_refractive": False,
-        "max_bounces": depth,
+        "max_bounces": endless,
         "diffuse_bounces": depth,
-        "glossy_bounces": depth,
-        "transmission_bounces": depth,
-        "volume_bounces": depth,
+        "glossy_bounces": endless,
+        "transmission_bounces": endless,
+        "volume_bounces": endless,
         "transparent_max_bounces": opal.transparent_depth,
         "sample_clamp_direct": 0.0,
         "sample_clamp_indirect": 0.0,

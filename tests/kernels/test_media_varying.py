@@ -102,7 +102,7 @@ def test_single_scattering_of_the_sun_in_a_slab(way):
 
 @pytest.mark.parametrize("way", WAYS)
 def test_a_veil_under_the_sun_has_light_in_every_sample(way):
-    """Of rays through a depth of 0.05 one in 20 collides: N of those alone would have an error of sqrt(20 / N), here 0.011."""
+    """Of rays through a depth of 0.05 one in 20 collides: N of those alone would have an error of sqrt(20 / N), here 0.02."""
     with Scene(threads=2) as scene:
         filled_box(scene, (-WIDE, -WIDE, 0), (WIDE, WIDE, 1), 0.05, 0.8, way)
         scene.add_light(type=2, power=1.0, transform=looking_down(5.0))
