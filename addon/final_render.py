@@ -10,6 +10,7 @@ import math
 import threading
 import time
 import traceback
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -21,7 +22,7 @@ from opal_kernels.render import Render
 from opal_kernels.scene import Scene
 
 from . import capture as captures
-from . import film_files, report, settings, spectral_exr
+from . import film_files, main_thread, report, settings, spectral_exr
 from .render_passes import RenderPass, wanted
 from .translate.camera import camera_from_object
 from .translate.scene_builder import SceneBuilder, Stopped
@@ -127,7 +128,7 @@ class _FinalRender:
             raise Stopped
 
     def _translate(self) -> Scene:
-        builder = SceneBuilder(self.report, self.settings.threads, self._stage, self.engine.is_preview)
+        builder = SceneBuilder(self.report, self.settings.threads, self._stage, self.engine.is_preview, undisturbed=self._undisturbed)
         try:
             motion = self.settings.motion_blur
             start, end = _shutter(self.scene.render) if motion else (0.0, 0.0)
@@ -156,6 +157,19 @@ class _FinalRender:
         except BaseException:
             builder.scene.close()
             raise
+
+    def _undisturbed(self, read: Callable[[], Any], depsgraph: Any) -> Any:
+        """Reads while nothing can be deleted; what went before is refused, for Blender's list of instances would look for it."""
+        if self.engine.is_preview:  # of a file of its own
+            return read()
+
+        def read_what_is_there() -> Any:
+            if gone := main_thread.deleted(depsgraph):
+                others = f" and {len(gone) - 1} more were" if len(gone) > 1 else " was"
+                raise OpalError(f"“{gone[0]}”{others} deleted while the render started: render again.")
+            return read()
+
+        return main_thread.call(read_what_is_there, lambda: self._stage("Reading objects"))
 
     def _go_to(self, time_in_frames: float) -> None:
         whole = int(np.floor(time_in_frames))

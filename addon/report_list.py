@@ -45,7 +45,7 @@ class OPAL_UL_report(bpy.types.UIList):
     """Lines of the report; searched by everything that they say."""
 
     def draw_item(self, _context: Any, layout: Any, _data: Any, item: Any, _icon: int, _active: Any, _name: str, index: int) -> None:
-        split = layout.split(factor=0.38)
+        split = layout.split(factor=0.5)
         row = split.row(align=True)
         row.alignment = "LEFT"
         row.label(text="", icon=LOST_ICON if item.lost else CHANGED_ICON)

@@ -54,6 +54,10 @@ def _ignore_stage(_text: str, _done: float = 0.0) -> None:
     pass
 
 
+def _at_once(read: Callable[[], Any], _depsgraph: Any) -> Any:
+    return read()
+
+
 class SceneBuilder:
     """Builds a kernel scene from a depsgraph.
 
@@ -69,6 +73,8 @@ class SceneBuilder:
         Gems absorb as stones of usual size do, not as the boulders that Blender's preview shows.
     map_width : int, optional
         Pixels across the world's importance map, at most; it says where samples go, not how bright anything is.
+    undisturbed : callable
+        Calls its first argument, which reads original data-blocks through the depsgraph that is the second.
     """
 
     def __init__(
@@ -78,8 +84,9 @@ class SceneBuilder:
         stage: Callable[..., None] = _ignore_stage,
         preview: bool = False,
         map_width: int | None = None,
+        undisturbed: Callable[[Callable[[], Any], Any], Any] = _at_once,
     ) -> None:
-        self._report, self._stage = report, stage
+        self._report, self._stage, self._undisturbed = report, stage, undisturbed
         self._map_width = map_width
         self.scene = Scene(threads=threads)
         self.spectra = Spectra(self.scene)
@@ -92,6 +99,16 @@ class SceneBuilder:
         """Reads everything that is seen: instances, lamps, world, materials and meshes."""
         self._stage("Reading objects")
         snapshot = Snapshot()
+        visible = self._undisturbed(lambda: self._read_blocks(depsgraph, snapshot), depsgraph)
+        needs = self.context.mesh_needs()
+        for count, group in enumerate(visible.groups):
+            self._stage(f"Reading meshes, {count + 1} of {len(visible.groups)}")
+            snapshot.mesh_of_group.append(self._read_mesh(group, needs, snapshot, snapshot.bodies[count]))
+        snapshot.groups = visible.groups
+        return snapshot
+
+    def _read_blocks(self, depsgraph: Any, snapshot: Snapshot) -> Visible:
+        """Everything but the meshes, which belong to the depsgraph; names lead to originals."""
         visible = self.read_objects(depsgraph, snapshot)
         self._stage("Reading materials")
         self.rain.begin([light for light, _ in snapshot.lights])
@@ -109,13 +126,7 @@ class SceneBuilder:
 
         for name, sentence in visible.problems:  # grids have been read by now
             self._report.add(name, sentence, lost=True)
-
-        needs = self.context.mesh_needs()
-        for count, group in enumerate(visible.groups):
-            self._stage(f"Reading meshes, {count + 1} of {len(visible.groups)}")
-            snapshot.mesh_of_group.append(self._read_mesh(group, needs, snapshot, snapshot.bodies[count]))
-        snapshot.groups = visible.groups
-        return snapshot
+        return visible
 
     def before_change(self, call: Callable[[], None]) -> None:
         """Sets what reading once more calls before it adds an image or a spectrum to the kernels' scene."""
@@ -194,7 +205,7 @@ class SceneBuilder:
     def read_end(self, depsgraph: Any, snapshot: Snapshot) -> None:
         """Reads once more what moves or deforms, at the end of the shutter; what cannot be matched stands still."""
         self._stage("Reading motion")
-        visible = collect(depsgraph)
+        visible = self._undisturbed(lambda: collect(depsgraph), depsgraph)
         by_rows = {(group.name, len(group.rows), int(group.rows[0])): group for group in visible.groups}
         for group, key in zip(snapshot.groups, snapshot.mesh_of_group, strict=True):
             later = by_rows.get((group.name, len(group.rows), int(group.rows[0])))

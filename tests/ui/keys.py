@@ -187,6 +187,52 @@ def look_at_the_curves():
         RESULT[f"lamp_{spectrum}"] = w.tones(w.screenshot(f"curve_lamp_{spectrum}"), w.box_of(w.area("PROPERTIES")))
 
 
+def click_on_a_line_of_the_report():
+    """A render that names an object; a click of the mouse on that line selects it."""
+    scene = bpy.context.scene
+    flat = bpy.data.objects.new("Flattened", bpy.data.meshes.new_from_object(next(o for o in bpy.data.objects if o.type == "MESH")))
+    flat.scale = (0, 0, 0)
+    scene.collection.objects.link(flat)
+    for obj in bpy.context.view_layer.objects:
+        obj.select_set(False)
+    scene.opal.passes, scene.render.resolution_percentage = 1, 10
+    ended = []
+    bpy.app.handlers.render_complete.append(lambda *_: ended.append(1))
+    bpy.ops.render.render()
+    yield from w.until(lambda: bool(ended), 30, "a render with a report")
+    others = [
+        kind
+        for kind in (getattr(bpy.types, name) for name in dir(bpy.types) if "_PT_" in name)
+        if getattr(kind, "bl_context", "") == "render" and kind.__name__ != "OPAL_RENDER_PT_report"
+    ]
+    own = {kind: kind.__dict__.get("poll") for kind in others}
+    for kind in others:  # the report alone, so that it is in sight
+        kind.poll = classmethod(lambda _cls, _context: False)
+    w.show_tab("RENDER")
+    yield 2.0
+    editor = w.area("PROPERTIES")
+    picture = w.screenshot("report_list")
+    RESULT["report_line"] = [(item.owner, item.kind) for item in bpy.context.window_manager.opal_report]
+    RESULT["report_selected_before"] = [o.name for o in bpy.context.selected_objects]
+    RESULT["report_list"] = w.tones(picture, w.box_of(editor))
+    # The list's active line is blue; the name stands in its left half, right of the icons.
+    part = w.pixels(picture, w.box_of(editor))
+    blue = ((part[..., 2] - part[..., 0]) > 0.2).sum(axis=1)
+    rows = [number for number, count in enumerate(blue) if count > 0.5 * part.shape[1]]
+    RESULT["report_line_rows"] = len(rows)
+    w.point_at(editor, 0.33, (rows[len(rows) // 2] + 0.5) / part.shape[0])
+    yield 0.5
+    w.click()
+    yield 0.5
+    w.screenshot("report_clicked")
+    RESULT["report_selected"] = [o.name for o in bpy.context.selected_objects]
+    for kind, poll in own.items():
+        if poll is None:
+            del kind.poll
+        else:
+            kind.poll = poll
+
+
 def leave():
     """Disabled, nothing of it is left."""
     with bpy.context.temp_override(window=w.window()):
@@ -210,6 +256,7 @@ def steps():
         compare,
         stop_the_gem_report,
         look_at_the_curves,
+        click_on_a_line_of_the_report,
         leave,
     ):
         yield from part()

@@ -69,5 +69,11 @@ def test_panels_show_curves_in_the_colours_of_the_spectrum(found):
     assert found["lamp_F11"]["colourful"] > 0.8 > found["lamp_COLOR"]["colourful"], (found["lamp_F11"], found["lamp_COLOR"])
 
 
+def test_a_click_on_a_line_of_the_report_selects_the_object(found):
+    assert ["Flattened", "OBJECT"] in found["report_line"] and found["report_selected_before"] == []
+    assert found["report_line_rows"] > 8, "the list's active line is in sight"
+    assert found["report_selected"] == ["Flattened"]
+
+
 def test_disabling_leaves_nothing(found):
     assert found["left_behind"] == []

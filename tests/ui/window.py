@@ -129,6 +129,13 @@ def press(key: str) -> None:
     subprocess.run(["xdotool", "key", _NUMBERS.get(key, key)], check=True)
 
 
+def click() -> None:
+    """Presses and lets go of the left button where the mouse is."""
+    subprocess.run(["xdotool", "mousedown", "1"], check=True)
+    time.sleep(0.02)
+    subprocess.run(["xdotool", "mouseup", "1"], check=True)
+
+
 def write_text(text: str) -> None:
     """Types letters."""
     subprocess.run(["xdotool", "type", "--delay", "60", text], check=True)
