@@ -242,6 +242,15 @@ def leave():
     w.screenshot("left")
 
 
+# Screenshots whose structure is compared with `blocks.json`, and the part of the screen that is looked at.
+STRUCTURES = {
+    "rendering": (0.0, 0.1, 0.82, 0.94),
+    "view_later": (0.2, 0.33, 0.62, 0.74),
+    "curve_gem": (0.845, 0.03, 0.995, 0.72),
+    "report_list": (0.845, 0.03, 0.995, 0.72),
+}
+
+
 def steps():
     yield 1.0
     with bpy.context.temp_override(window=w.window()):
@@ -261,6 +270,7 @@ def steps():
     ):
         yield from part()
         w.write()
+    RESULT["blocks"] = {name: w.blocks(w.FOLDER / f"{name}.png", box) for name, box in STRUCTURES.items()}
 
 
 w.run(steps())

@@ -7,12 +7,18 @@ coloured, whether its grain falls.
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+
+import numpy as np
 import pytest
 from real_blender import SCREENSHOTS, drive
 
 # Escape is asked for every 0.03 s and every pass of the tracer ends within 0.1 s of it; Blender's interface looks at its render
 # job every 0.1 s. On a busy machine we measured 0.25 to 0.46 s; it gets time to draw.
 ESCAPE_SECONDS = 1.0
+# Block means of screenshots that were looked at and found right (`window.blocks`).
+STORED = json.loads((Path(__file__).parent / "blocks.json").read_text())
 
 
 @pytest.fixture(scope="module")
@@ -73,6 +79,24 @@ def test_a_click_on_a_line_of_the_report_selects_the_object(found):
     assert ["Flattened", "OBJECT"] in found["report_line"] and found["report_selected_before"] == []
     assert found["report_line_rows"] > 8, "the list's active line is in sight"
     assert found["report_selected"] == ["Flattened"]
+
+
+@pytest.mark.parametrize("name", sorted(STORED))
+def test_a_screenshot_has_the_structure_that_it_had(found, name):
+    """Means of 6 x 8 blocks: panels, picture and list stand where they stood, as bright as they were.
+
+    Two runs differed by noise by at most 0.005 in any block; another font may change one a little more.
+    """
+    now, before = np.array(found["blocks"][name]), np.array(STORED[name])
+    assert np.corrcoef(now.ravel(), before.ravel())[0, 1] > 0.9, now
+    assert np.abs(now - before).max() < 0.05, np.round(now - before, 2)
+
+
+def test_the_stored_structures_tell_screenshots_apart():
+    for one in STORED:
+        for other in STORED:
+            if one < other:
+                assert np.corrcoef(np.ravel(STORED[one]), np.ravel(STORED[other]))[0, 1] < 0.5, (one, other)
 
 
 def test_disabling_leaves_nothing(found):

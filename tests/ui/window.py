@@ -175,3 +175,9 @@ def tones(path: Path, box: tuple[float, float, float, float] = (0, 0, 1, 1)) -> 
         "grain": float(np.abs(np.diff(part, axis=1)).mean()),
         "colourful": float(np.ptp(part, axis=-1).max()),
     }
+
+
+def blocks(path: Path, box: tuple[float, float, float, float], rows: int = 6, columns: int = 8) -> list[list[float]]:
+    """Means of a picture's part over a grid of blocks, rows from the bottom up: what stands where, whatever the font or the grain."""
+    grey = pixels(path, box).mean(axis=-1)
+    return [[round(float(b.mean()), 4) for b in np.array_split(row, columns, axis=1)] for row in np.array_split(grey, rows, axis=0)]
