@@ -3,13 +3,14 @@
 
     python tools/with_extension.py SCRIPT [ARGUMENTS]
 
-The profile (build/profile) is made anew each time, so the script sees what an artist sees after installing the zip.
+The profile is a temporary folder of this run's own, so the script sees what an artist sees after installing the zip, and runs beside
+each other do not share one.
 """
 
 import os
 import runpy
-import shutil
 import sys
+import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -18,11 +19,12 @@ ROOT = Path(__file__).resolve().parent.parent
 def main() -> None:
     if len(sys.argv) < 2:
         raise SystemExit(__doc__)
-    profile = ROOT / "build" / "profile"
-    shutil.rmtree(profile, ignore_errors=True)
-    profile.mkdir(parents=True)
-    os.environ["BLENDER_USER_RESOURCES"] = str(profile)  # read when bpy is imported
+    with tempfile.TemporaryDirectory(prefix="opal-profile-", ignore_cleanup_errors=True) as profile:
+        os.environ["BLENDER_USER_RESOURCES"] = profile  # read when bpy is imported
+        run()
 
+
+def run() -> None:
     import bpy
 
     zips = sorted((ROOT / "dist").glob("opal-*.zip"))
