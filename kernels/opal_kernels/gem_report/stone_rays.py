@@ -133,18 +133,31 @@ class StoneRays:
                 break
         return out
 
-    def _next_facet(self, out, facet, p, d, weight, rays, n, sigma, least):
-        # Off the facet by a rounding error's worth; inside a closed surface the next hit is another facet.
+    def _hit_from_inside(self, p, d):
+        # Off the facet by a rounding error's worth; inside a closed surface the next hit is another facet, seen from within.
         t, triangle = self._intersect(p + 1e-5 * d, d)
-        inside = np.isfinite(t) & (weight > least)
-        p, d, weight, rays, t, triangle = p[inside], d[inside], weight[inside], rays[inside], t[inside] + 1e-5, triangle[inside]
+        t += 1e-5
+        slipped = np.flatnonzero(~(np.isfinite(t) & (np.einsum("ij,ij->i", d, self.stone.normals[triangle]) > 0)))
+        if len(slipped):
+            # Beside an edge that step left the stone: the ray starts a little nearer to the stone's centre instead.
+            p = p.copy()
+            p[slipped] *= 1 - 1e-4
+            t[slipped], triangle[slipped] = self._intersect(p[slipped], d[slipped])
+        return p, t, triangle
+
+    def _next_facet(self, out, facet, p, d, weight, rays, n, sigma, least):
+        carried = weight > least
+        p, d, weight, rays = p[carried], d[carried], weight[carried], rays[carried]
+        p, t, triangle = self._hit_from_inside(p, d)
+        inside = np.isfinite(t)
+        p, d, weight, rays, t, triangle = p[inside], d[inside], weight[inside], rays[inside], t[inside], triangle[inside]
         p = p + t[:, None] * d
         passed = np.exp(-sigma * t)
         out.absorbed[rays] += weight * (1 - passed)
         weight = weight * passed
         normal = -self.stone.normals[triangle]
         cosine = -np.einsum("ij,ij->i", d, normal)
-        right_side = cosine > 0  # a grazing ray that slipped out at an edge is given up
+        right_side = cosine > 0  # a ray that twice slipped out at an edge is given up
         cosine = np.clip(cosine, 0, 1)
         reflected, behind = fresnel(cosine, 1 / n)
         out.weight[facet, rays] = np.where(right_side, weight * (1 - reflected), 0)
