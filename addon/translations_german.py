@@ -379,6 +379,7 @@ TOOLTIPS = {
 }
 
 OPERATORS = {
+    "Absorption of a Gem (.csv)": "Absorption eines Edelsteins (.csv)",
     "Add Render Preset": "Rendervorgabe hinzufügen",
     "Apply Material Preset": "Materialvorgabe anwenden",
     "Apply Render Preset": "Rendervorgabe anwenden",

@@ -11,6 +11,7 @@ from . import (
     gem_report,
     import_absorption,
     import_gemcad,
+    menus,
     merge,
     panels,
     presets,
@@ -35,6 +36,7 @@ _MODULES = (
     presets,
     update_twins,
     panels,
+    menus,
 )
 
 

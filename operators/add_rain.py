@@ -126,15 +126,9 @@ def _material(preset: str, extinction: float) -> bpy.types.Material:
     return material
 
 
-def _draw_menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
-    self.layout.operator(OPAL_OT_add_rain.bl_idname, icon="OUTLINER_OB_FORCE_FIELD")
-
-
 def register() -> None:
     bpy.utils.register_class(OPAL_OT_add_rain)
-    bpy.types.VIEW3D_MT_volume_add.append(_draw_menu)
 
 
 def unregister() -> None:
-    bpy.types.VIEW3D_MT_volume_add.remove(_draw_menu)
     bpy.utils.unregister_class(OPAL_OT_add_rain)

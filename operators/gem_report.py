@@ -211,15 +211,9 @@ class _Work(threading.Thread):
             self.sentence = str(error) or "There is not enough memory for the report."
 
 
-def _draw_menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
-    self.layout.operator(OPAL_OT_gem_report.bl_idname)
-
-
 def register() -> None:
     bpy.utils.register_class(OPAL_OT_gem_report)
-    bpy.types.VIEW3D_MT_object.append(_draw_menu)
 
 
 def unregister() -> None:
-    bpy.types.VIEW3D_MT_object.remove(_draw_menu)
     bpy.utils.unregister_class(OPAL_OT_gem_report)

@@ -62,15 +62,9 @@ class OPAL_OT_import_gemcad(bpy.types.Operator, ImportHelper):
         return {"FINISHED"}
 
 
-def _draw_menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
-    self.layout.operator(OPAL_OT_import_gemcad.bl_idname, text="GemCad (.asc)")
-
-
 def register() -> None:
     bpy.utils.register_class(OPAL_OT_import_gemcad)
-    bpy.types.TOPBAR_MT_file_import.append(_draw_menu)
 
 
 def unregister() -> None:
-    bpy.types.TOPBAR_MT_file_import.remove(_draw_menu)
     bpy.utils.unregister_class(OPAL_OT_import_gemcad)

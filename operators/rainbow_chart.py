@@ -164,15 +164,9 @@ def _save(image: bpy.types.Image, path: Path, file_format: str) -> str:
     return str(path)
 
 
-def _draw_menu(self: bpy.types.Menu, _context: bpy.types.Context) -> None:
-    self.layout.operator(OPAL_OT_rainbow_chart.bl_idname)
-
-
 def register() -> None:
     bpy.utils.register_class(OPAL_OT_rainbow_chart)
-    bpy.types.TOPBAR_MT_render.append(_draw_menu)
 
 
 def unregister() -> None:
-    bpy.types.TOPBAR_MT_render.remove(_draw_menu)
     bpy.utils.unregister_class(OPAL_OT_rainbow_chart)

@@ -85,8 +85,11 @@ def tables() -> set[Message]:
 
 
 def texts() -> set[Message]:
-    """Literal texts that layouts draw."""
-    found = set()
+    """Literal texts that layouts and Blender's own menus draw."""
+    from importlib import import_module
+
+    entries = import_module("bl_ext.user_default.opal.operators.menus").ENTRIES.values()
+    found = {(OPERATOR, text) for menu in entries for _name, text, _icon in menu if text}
     for path in (*ROOT.glob("addon/*.py"), *ROOT.glob("operators/*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)):

@@ -109,7 +109,7 @@ def test_these_are_opals_operators():
 
 
 @pytest.mark.parametrize("name", OPERATORS)
-def test_every_operator_and_its_choices_say_in_a_sentence_what_they_do_and_are_found_by_search(name):
+def test_every_operator_and_its_choices_say_in_a_sentence_what_they_do(name):
     rna = getattr(bpy.ops.opal, name).get_rna_type()
     assert is_a_sentence(rna.description, 5) and rna.name[0].isupper()
     # What Blender's own helpers bring along: the file browser and the alignment of added objects.
@@ -123,8 +123,38 @@ def test_every_operator_and_its_choices_say_in_a_sentence_what_they_do_and_are_f
         if not is_a_sentence(item.description, 2)
     ]
     assert not unsaid
-    # Blender's search leaves out what is internal.
-    assert "INTERNAL" not in getattr(bpy.types, f"OPAL_OT_{name}").bl_options or name.startswith(("render_preset_", "apply_preset"))
+
+
+class Recorded:
+    """A layout that notes which operators are drawn into it."""
+
+    def __init__(self, drawn):
+        self.drawn = drawn
+
+    def operator(self, name, **_options):
+        self.drawn.add(name)
+        return type("Options", (), {})()
+
+    def menu(self, name, **_options):
+        getattr(bpy.types, name).draw(type("Menu", (), {"layout": self})(), bpy.context)
+
+    def column(self):
+        return self
+
+    def separator(self):
+        pass
+
+
+def test_what_a_person_calls_stands_in_a_menu_where_search_finds_it():
+    """Blender's search (F3) goes through menus; buttons of panels alone are those that act on a row or a preset."""
+    drawn = set()
+    menus = "VIEW3D_MT_mesh_add VIEW3D_MT_volume_add VIEW3D_MT_object TOPBAR_MT_file_import TOPBAR_MT_render".split()
+    for menu in menus:
+        for draw in getattr(bpy.types, menu)._dyn_ui_initialize():
+            if draw.__module__.startswith("bl_ext.user_default.opal"):
+                draw(type("Menu", (), {"layout": Recorded(drawn)})(), bpy.context)
+    of_panels = {"apply_preset", "render_preset_add", "render_preset_apply", "render_preset_remove", "select_reported"}
+    assert drawn == {f"opal.{name}" for name in set(OPERATORS) - of_panels}
 
 
 def test_sub_panels_are_closed_and_sampling_comes_first():

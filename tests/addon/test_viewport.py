@@ -301,8 +301,8 @@ def resident():
 
 
 @pytest.mark.skipif(not __import__("os").path.exists("/proc/self/statm"), reason="needs /proc")
-def test_a_hundred_and_twenty_edits_take_no_memory(view):
-    """Every kind of edit in turn. A mesh left behind would be 0.5 MB an edit, a gem's tables 4 kB: 0.2 MB in the second half."""
+def test_five_hundred_edits_take_no_memory(view):
+    """Every kind of edit in turn. A mesh left behind would be 0.5 MB an edit, a gem's tables 4 kB: 2 MB of the 2 MB allowed."""
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=80, y_subdivisions=80, size=2)
     bpy.context.object.name = "Grid"
     bpy.context.view_layer.update()
@@ -322,11 +322,11 @@ def test_a_hundred_and_twenty_edits_take_no_memory(view):
         round_of(number)
     gc.collect()
     before = resident()
-    for number in range(8, 20):
+    for number in range(8, 92):
         round_of(number)
     gc.collect()
     grown = resident() - before
-    assert grown < 2e6, f"{grown / 1e6:.2f} MB over 72 edits"
+    assert grown < 2e6, f"{grown / 1e6:.2f} MB over 504 edits"
 
 
 def _reshape_by(name, share):

@@ -59,6 +59,20 @@ def add_gem_from_the_menu():
     RESULT["species"] = gem.active_material.opal.gem.species
 
 
+def search():
+    """F3 finds what has no other key: the twins are brought up to date."""
+    w.point_at(w.area("VIEW_3D"), 0.5, 0.6)
+    yield 0.5
+    w.press("F3")
+    yield 1.0
+    w.write_text("update twins")
+    yield 1.0
+    w.screenshot("searched")
+    w.press("Return")
+    yield 1.0
+    RESULT["searched"] = [operator.bl_idname for operator in bpy.context.window_manager.operators][-1:]
+
+
 def render_and_escape():
     """F12, the words that Blender shows of it, then Escape; how long that takes, and what is left."""
     scene = bpy.context.scene
@@ -260,6 +274,7 @@ def steps():
     yield 1.0
     for part in (
         add_gem_from_the_menu,
+        search,
         render_and_escape,
         look_at_the_rendered_view,
         compare,

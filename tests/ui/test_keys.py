@@ -34,6 +34,10 @@ def test_the_menu_adds_a_gem_with_its_material(found):
     assert found["species_seconds"] < 0.5, "a species is one edit"
 
 
+def test_search_finds_what_has_no_key(found):
+    assert found["searched"] == ["OPAL_OT_update_twins"]
+
+
 def test_f12_shows_progress_and_a_picture_meanwhile(found):
     assert any("Pass 1 of 10000" in text for text in found["words"]), found["words"]
     assert found["while_rendering"]["spread"] > 0.02 and found["while_rendering"]["colourful"] > 0.2, found["while_rendering"]

@@ -120,8 +120,8 @@ def point_at(editor, x: float = 0.5, y: float = 0.5) -> None:
         subprocess.run(["xdotool", "mousemove", str(int(left) + shift), str(int(top))], check=True)
 
 
-# xdotool reaches F12 by its name through a level of the key that holds Alt: by its number it is F12 alone.
-_NUMBERS = {"F12": "96"}
+# xdotool reaches these by their names through a level of the key that holds Alt: by its number a key is itself alone.
+_NUMBERS = {"F3": "69", "F12": "96"}
 
 
 def press(key: str) -> None:
