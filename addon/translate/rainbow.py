@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from opal_kernels import droplets
 from opal_kernels.descriptions import Density, Light, LightType, MediumLayer
+from opal_kernels.optics.rainbow import drops as sizes
 from opal_kernels.optics.rainbow import sight
 from opal_kernels.scene import Scene
 
@@ -35,7 +36,7 @@ def drops_of(rainbow: Any, elevations: Sequence[float] = ()) -> droplets.Drops:
     return droplets.Drops(
         theory=rainbow.theory,
         radius_um=round(rainbow.radius * 1000.0, 4),
-        spread=0.0 if single else round(rainbow.spread, 6),
+        spread=0.0 if single else 1.0 if rainbow.distribution == "MARSHALL_PALMER" else round(rainbow.spread, 6),
         distribution="LOG_NORMAL" if single else rainbow.distribution,
         celsius=20.0 if custom else round(rainbow.temperature, 3),
         salinity=round(rainbow.salinity, 3) if rainbow.liquid == "SEA_WATER" else 0.0,
@@ -45,6 +46,18 @@ def drops_of(rainbow: Any, elevations: Sequence[float] = ()) -> droplets.Drops:
         flattening=round(flattening, 5),
         elevations=droplets.elevation_nodes(elevations) if flattening > 0.0 else (),
     )
+
+
+def refusal(rainbow: Any) -> str:
+    """Why there are no drops as `OpalRainbowProperties` says them, in its own names and units; empty where they can be."""
+    least, most = sizes.SMALLEST_UM / 1000.0, sizes.LARGEST_UM / 1000.0
+    drops = drops_of(rainbow)
+    if not least <= drops.radius_um / 1000.0 <= most:
+        return f"Radius must lie between {least:g} and {most:g} mm, not {rainbow.radius:g} mm."
+    if not 0.0 <= drops.spread <= sizes.LARGEST_SPREAD:
+        return f"Spread must lie between 0 and {sizes.LARGEST_SPREAD:g}, not {rainbow.spread:g}."
+    sentence = droplets.index_refusal(drops)
+    return f"Index and Dispersion give {sentence}." if sentence else ""
 
 
 class Rain:
@@ -112,6 +125,8 @@ class Rain:
 
     def phase(self, rainbow: Any) -> tuple[droplets.Drops, Any]:
         """The drops and their phase function; errors as `add`."""
+        if sentence := refusal(rainbow):
+            raise ValueError(sentence)
         drops = drops_of(rainbow, [float(np.arcsin(np.clip(sun[2], -1.0, 1.0))) for sun in self._suns()])
 
         def told(done: float) -> None:

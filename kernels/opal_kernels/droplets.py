@@ -234,6 +234,16 @@ def phase(drops: Drops, polarization: bool = True, store: TableStore | None = No
     )
 
 
+def index_refusal(drops: Drops) -> str:
+    """Why an index that was given cannot be, as it is at the wavelengths of a table; empty where it can."""
+    wavelengths = drops.wavelengths()
+    index = _indices(drops, wavelengths)
+    if index is None or (np.isfinite(index) & (index > 1)).all():
+        return ""
+    worst = int(np.argmin(index))
+    return f"an index of {index[worst]:.3f} at {wavelengths[worst]:.0f} nm, and drops need one above 1"
+
+
 def elevation_nodes(heights: Sequence[float]) -> tuple[float, ...]:
     """Heights (radians) at which a table for flattened drops is computed: those of the suns, at most four, in whole tenths of a degree."""
     tenths = sorted({round(np.degrees(h) * 10) for h in heights if -0.1 <= h <= np.pi / 2})

@@ -9,36 +9,9 @@ import pytest
 
 bpy = pytest.importorskip("bpy")
 import stage  # noqa: E402
+from rain_stage import SUN_HEIGHT, looking, rain_scene, sun  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("opal")
-SUN_HEIGHT = math.radians(20.0)
-
-
-def sun(height=SUN_HEIGHT, azimuth=math.pi, energy=4.0):
-    """A sun at a height and an azimuth (from +Y towards +X)."""
-    data = bpy.data.lights.new("Sun", "SUN")
-    data.energy, data.angle = energy, math.radians(0.53)
-    obj = stage.link("Sun", data)
-    obj.rotation_euler = (math.pi / 2 - height, 0.0, math.pi - azimuth)
-    bpy.context.view_layer.update()
-    return obj
-
-
-def looking(azimuth=0.0, height=0.2094, lens=18.0):
-    return stage.camera((0, 0, 2), (math.pi / 2 + height, 0.0, -azimuth), lens=lens, clip_end=1e5)
-
-
-def rain_scene(width=48, height=27, passes=2, **drops):
-    """A curtain of rain under a sun behind the camera; cheap drops."""
-    scene = stage.scene(width, height, passes, 4)
-    sun()
-    looking()
-    bpy.ops.opal.add_rain()
-    rainbow = bpy.context.object.active_material.opal.rainbow
-    rainbow.theory = "DESCARTES_SAMPLED"
-    for name, value in drops.items():
-        setattr(rainbow, name, value)
-    return scene
 
 
 def test_the_suns_axes_are_what_the_tests_take_them_for():
@@ -109,18 +82,6 @@ def test_world_rain_shows_a_bow_over_the_horizon(tmp_path):
     rows = {e: int(18 + f * math.tan(math.radians(e - 12.0))) for e in (21.5, 25.0)}
     assert picture[rows[21.5], 24:40].mean() > 2 * picture[rows[25.0] + 1, 24:40].mean() > 0
     assert stage.problems() == []
-
-
-@pytest.mark.parametrize(
-    ("name", "value", "said"),
-    [("radius", 0.0, "radius must lie between"), ("radius", 1000.0, "radius must lie between"), ("spread", 40.0, "spread")],
-)
-def test_impossible_drops_are_named_and_the_picture_comes(tmp_path, name, value, said):
-    rain_scene(16, 9, 1, **{name: value})
-    picture = stage.render(tmp_path)
-    assert picture.shape == (9, 16, 4) and np.isfinite(picture).all()
-    assert len(stage.problems()) == 1 and said in stage.problems()[0] and stage.problems()[0].startswith("Rain: ")
-    assert stage.problems()[0].endswith("; the body is rendered empty.")
 
 
 @pytest.mark.parametrize(
