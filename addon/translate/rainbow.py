@@ -10,7 +10,7 @@ import numpy as np
 from opal_kernels import droplets
 from opal_kernels.descriptions import Density, Light, LightType, MediumLayer
 from opal_kernels.optics.rainbow import drops as sizes
-from opal_kernels.optics.rainbow import sight
+from opal_kernels.optics.rainbow import rain_places, sight
 from opal_kernels.scene import Scene
 
 from .. import rainbow_tables
@@ -76,11 +76,18 @@ class Rain:
     def __init__(self, scene: Scene, report: Report, stage: Callable[..., None]) -> None:
         self._scene, self._report, self._stage = scene, report, stage
         self._lights: list[Light] = []
+        self._regions: list[rain_places.Box | rain_places.Air] = []
         self.present = False
 
     def begin(self, lights: Sequence[Light]) -> None:
         """The lamps of the scene, as they were read."""
         self._lights = list(lights)
+
+    def stands(self, materials: Sequence[Any], box: tuple[np.ndarray, np.ndarray], transforms: np.ndarray) -> None:
+        """Where the drops of a closed body are, if any of its materials are drops: its box, and box to world of its copies."""
+        for material in materials:
+            if material is not None and material.opal.kind == "RAINBOW" and not refusal(material.opal.rainbow):
+                self._regions.append(rain_places.Box(droplets.arcs(drops_of(material.opal.rainbow)), transforms, *box))
 
     def _suns(self) -> list[np.ndarray]:
         """Directions to the suns, unit vectors."""
@@ -112,6 +119,7 @@ class Rain:
                 "Scale Height",
             )
         drops, phase = self.phase(settings.rainbow)
+        self._regions.append(rain_places.Air(droplets.arcs(drops), settings.rainbow.extinction, settings.base_height))
         medium = self._scene.add_medium(
             settings.rainbow.extinction * drops.extinction_factor,
             1.0,
@@ -144,8 +152,10 @@ class Rain:
         ----------
         camera : opal_kernels.descriptions.Camera
         """
-        if not self.present:
+        if not self._regions:
             return
-        others = any(light.type != LightType.SUN for light in self._lights)
-        for sentence in sight.warnings(self._suns(), sight.View.of(camera), lamps=others):
+        strongest = max((light.power for light in self._lights if light.type == LightType.SUN), default=0.0)
+        found = [(np.asarray(light.transform, float)[:3, 3], light.power) for light in self._lights if light.type != LightType.SUN]
+        lamps = rain_places.lamps(found, self._regions, strongest)
+        for sentence in sight.warnings(self._suns(), sight.View.of(camera), self._regions, lamps):
             self._report.add("Rainbow", sentence)

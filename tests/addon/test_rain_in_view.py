@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What Opal says of rain: nothing where something is to be seen, else one sentence, at `opal.add_rain` and in the render's report alike."""
 
+import math
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,9 +9,105 @@ import pytest
 
 bpy = pytest.importorskip("bpy")
 import stage  # noqa: E402
-from rain_stage import rain_scene  # noqa: E402
+from rain_stage import looking, rain_scene, sun  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("opal")
+
+
+@pytest.fixture
+def quick(monkeypatch):
+    """Drops without tables: where a bow is to be seen does not depend on them."""
+    from opal_kernels import droplets
+    from opal_kernels.descriptions import Phase
+
+    monkeypatch.setattr(droplets, "phase", lambda *_: Phase())
+
+
+@pytest.fixture
+def said(quick, capfd, tmp_path):
+    """Adds rain and renders; what the operator and the render say, which must be the same."""
+
+    def add_and_render(**settings):
+        scene = stage.scene(16, 9, 1, 1)
+        capfd.readouterr()
+        bpy.ops.opal.add_rain(**settings)
+        told = [line.partition("Warning: ")[2].strip() for line in capfd.readouterr().out.splitlines() if "Warning: " in line]
+        stage.render(tmp_path)
+        assert [f"Rainbow: {sentence}" for sentence in told] == stage.problems(), scene
+        return told
+
+    return add_and_render
+
+
+# Radius of what a preset shows, degrees from the antisolar point.
+SHOWN = {"GLASS_BEADS": 22.0, "FOGBOW": 37.7, "CORONA": 180.0}
+
+
+def test_no_preset_is_warned_of_where_its_bow_is_in_a_narrow_frame(said):
+    presets = stage.addon("rainbow_presets").PRESETS
+    sun(math.radians(12.0))
+    for name in presets:
+        radius = SHOWN.get(name, 41.5)
+        camera = looking(0.0, math.radians(radius - 12.0), lens=100.0) if radius < 90 else looking(math.pi, math.radians(12.0), lens=100.0)
+        assert said(preset=name) == [], name
+        bpy.data.objects.remove(bpy.context.object)
+        bpy.data.objects.remove(camera)
+    looking(0.0, math.radians(52.0 - 12.0), lens=90.0)
+    assert said() == [], "the secondary alone"
+    looking(math.pi / 2, math.radians(20.0), lens=100.0)
+    assert len(said()) == 1
+
+
+@pytest.mark.parametrize(
+    ("height", "words"),
+    [(None, ("no sun", "lamps")), (-5.0, ("below the horizon", "lamps")), (60.0, ("above 52°",))],
+)
+def test_a_lamp_far_from_the_rain_silences_nothing(said, height, words):
+    """As in Blender's factory scene: a point lamp of 1 kW stands near the camera and the curtain at 150 m."""
+    data = bpy.data.lights.new("Light", "POINT")
+    data.energy = 1000.0
+    stage.link("Light", data, (4.08, 1.0, 5.9))
+    if height is not None:
+        sun(math.radians(height))
+    looking(0.0, 0.0)
+    sentences = said()
+    assert len(sentences) == 1 and all(word in sentences[0] for word in words), sentences
+
+
+def test_a_lamp_by_a_spray_makes_a_bow_of_its_own_and_nothing_is_said(quick, tmp_path):
+    stage.scene(16, 9, 1, 1)
+    looking(0.0, 0.0)
+    data = bpy.data.lights.new("Light", "POINT")
+    data.energy = 60.0
+    stage.link("Light", data, (0.0, 0.0, 3.0))
+    bpy.ops.mesh.primitive_cube_add(size=1.0, location=(0, 3, 2))
+    material = bpy.data.materials.new("Spray")
+    material.opal.kind = "RAINBOW"
+    bpy.context.object.data.materials.append(material)
+    stage.render(tmp_path)
+    assert stage.problems() == []
+
+
+def test_an_orthographic_camera_is_told_that_it_cannot_see_a_bow(said):
+    sun()
+    looking().data.type = "ORTHO"
+    sentences = said()
+    assert len(sentences) == 1 and "orthographic" in sentences[0].lower()
+
+
+def test_rain_on_the_world_begins_with_numbers_that_let_the_sun_through(quick, tmp_path):
+    stage.scene(16, 9, 1, 1)
+    sun()
+    looking()
+    world = bpy.context.scene.world = bpy.data.worlds.new("Rain")
+    world.opal.kind = "RAINBOW"
+    assert (world.opal.scale_height, world.opal.rainbow.extinction) == (1000.0, pytest.approx(0.0005))
+    stage.render(tmp_path)
+    assert stage.problems() == []
+    bpy.data.objects.remove(bpy.data.objects["Sun"])
+    stage.link("Light", bpy.data.lights.new("Light", "POINT"))
+    stage.render(tmp_path)
+    assert len(stage.problems()) == 1 and "no sun" in stage.problems()[0] and "lamps" in stage.problems()[0]
 
 
 @pytest.mark.parametrize(("kind", "filling"), [("RAINBOW", "rainbow"), ("MEDIUM", "medium")])
