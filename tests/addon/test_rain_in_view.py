@@ -178,3 +178,30 @@ def test_small_drops_by_airys_theory_are_hinted_at():
         hints = []
         panels.draw_drops(Layout(), rainbow)
         assert len(hints) == expected, (theory, radius)
+
+
+def test_escape_while_drops_are_computed_ends_the_render_and_leaves_nothing(tmp_path, monkeypatch):
+    """F12 with drops that no table is kept of: the bar moves on, Escape half way stops, and the next render is as any."""
+    from opal_kernels import droplets
+
+    rain_scene(16, 9, 1, temperature=13.7)
+    render = stage.addon("final_render")._FinalRender
+    real, bar = render._stage, []
+
+    def escape_half_way(self, text, done=0.0):
+        engine = SimpleNamespace(update_stats=lambda *_: None, update_progress=bar.append, test_break=lambda: done > 0.5)
+        if text.startswith("Computing the rainbow's drops"):
+            real(SimpleNamespace(engine=engine, last_stage=-np.inf), text, done)
+
+    def kept():
+        return {path.name for path in stage.addon("rainbow_tables").folder().glob("*")}
+
+    before, recent = kept(), set(droplets._recent())
+    with monkeypatch.context() as patch:
+        patch.setattr(render, "_stage", escape_half_way)
+        bpy.ops.render.render()  # writes no picture, as Blender does not after Escape
+    assert len(bar) > 2 and bar == sorted(bar) and bar[0] < 0.3 and 0.5 < bar[-1] < 1.0, bar
+    assert kept() == before and set(droplets._recent()) == recent
+    assert stage.render(tmp_path)[..., :3].max() > 0
+    assert stage.problems() == []
+    assert len(kept() - before) >= 1 and set(droplets._recent()) != recent
