@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Settings of what fills a body or the world instead of covering it; rainbows have a file of their own."""
 
+from typing import Any
+
 import bpy
 from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty, StringProperty
 
@@ -143,6 +145,21 @@ class OpalMediumProperties(bpy.types.PropertyGroup):
     )
 
 
+# What rain or haze on the world begins with: of a shower cloud's base, and so thin that the sun comes through (a half of it from overhead).
+_WORLD_HEIGHT, _WORLD_EXTINCTION = 1000.0, 0.0005
+
+
+def _on_world_kind(world: Any, _context: Any) -> None:
+    """A world that is filled for the first time lets the sun through: defaults of a body are a wall without end there."""
+    filling = {"MEDIUM": world.medium, "RAINBOW": world.rainbow}.get(world.kind)
+    if filling is None:
+        return
+    if not world.is_property_set("scale_height"):
+        world.scale_height = _WORLD_HEIGHT
+    if not filling.is_property_set("extinction"):
+        filling.extinction = _WORLD_EXTINCTION
+
+
 class OpalWorldProperties(bpy.types.PropertyGroup):
     """What fills the world: nothing, a medium or rain."""
 
@@ -155,6 +172,7 @@ class OpalWorldProperties(bpy.types.PropertyGroup):
             ("RAINBOW", "Rainbow", "Water drops everywhere: rain to the horizon"),
         ),
         default="NONE",
+        update=_on_world_kind,
     )
     medium: PointerProperty(type=OpalMediumProperties, name="Medium")
     rainbow: PointerProperty(type=rainbow_properties.OpalRainbowProperties, name="Rainbow")

@@ -7,11 +7,20 @@ from typing import Any
 
 import bpy
 
+AIRY_FROM = 0.05  # mm: below, the cubic wavefront is too simple
+
+
+def too_small_for_airy(rainbow: Any) -> bool:
+    """Whether Airy's theory would show a plausible bow that is wrong."""
+    return rainbow.theory == "AIRY" and rainbow.radius < AIRY_FROM
+
 
 def draw_drops(layout: Any, rainbow: Any) -> None:
     """The settings of `OpalRainbowProperties`."""
     layout.prop(rainbow, "preset")
     layout.prop(rainbow, "theory")
+    if too_small_for_airy(rainbow):
+        layout.label(text="Lorenz-Mie is right for drops below 0.05 mm", icon="INFO")
     column = layout.column()
     column.prop(rainbow, "distribution")
     column.prop(rainbow, "radius", text="Radius (mm)")

@@ -66,9 +66,10 @@ def items() -> tuple[tuple[str, str, str], ...]:
 
 
 def on_preset(rainbow: Any, _context: Any = None) -> None:
-    """Fills a rainbow's numbers from the preset chosen."""
+    """Fills a rainbow's numbers from the preset chosen; a world keeps its extinction, for those below are of curtains, not of all the air."""
     row = PRESETS.get(rainbow.preset)
     if row is None:
         return
     for name, value in (_WATER | row[2]).items():
-        setattr(rainbow, name, value)
+        if name != "extinction" or rainbow.id_data.id_type != "WORLD":
+            setattr(rainbow, name, value)

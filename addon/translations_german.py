@@ -57,6 +57,7 @@ LABELS = {
     "Keep": "Behalten",
     "Last": "Letzte",
     "Light": "Licht",
+    "Lorenz-Mie is right for drops below 0.05 mm": "Für Tropfen unter 0,05 mm stimmt Lorenz-Mie",
     "Normal": "Normale",
     "Phase": "Phase",
     "Photons per Pass": "Photonen je Durchgang",

@@ -49,17 +49,24 @@ class OPAL_OT_add_rain(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         import numpy as np
-        from opal_kernels.optics.rainbow import sight
+        from opal_kernels import droplets
+        from opal_kernels.optics.rainbow import rain_places, sight
+        from opal_kernels.optics.rainbow.curtain import curtain as curtain_for
+
+        from ..addon.translate.rainbow import drops_of
 
         scene = context.scene
-        suns = _suns(context)
+        suns, strongest = _suns(context)
         eye, view = _camera(scene)
-        curtain = sight.curtain(suns, view, eye, self.distance, self.depth)
+        material = _material(self.preset, -np.log1p(-self.share) / self.depth)
+        arcs = droplets.arcs(drops_of(material.opal.rainbow))
+        # A corona is seen round the sun: then the curtain stands where the camera looks.
+        curtain = curtain_for([] if arcs.corona else suns, view, eye, self.distance, self.depth)
         obj = bpy.data.objects.new("Rain", _box(curtain.size))
         obj.location = curtain.centre
         obj.rotation_euler = (0.0, 0.0, curtain.turn)
         obj.display_type = "WIRE"
-        obj.data.materials.append(_material(self.preset, -np.log1p(-self.share) / self.depth))
+        obj.data.materials.append(material)
         context.collection.objects.link(obj)
         for other in context.selected_objects:
             other.select_set(False)
@@ -68,9 +75,11 @@ class OPAL_OT_add_rain(bpy.types.Operator):
         if view is None:
             self.report({"WARNING"}, "The scene has no camera: the rain stands where somebody at the origin sees the bow.")
         else:
-            lamps = any(o.type == "LIGHT" and o.data.type != "SUN" for o in scene.objects if o.visible_get())
-            hidden = np.arctan2(curtain.centre[2] - curtain.size[2] / 2 - eye[2], self.distance)
-            for sentence in sight.warnings(suns, view, lamps, hidden):
+            context.view_layer.update()
+            half = np.asarray(curtain.size) / 2
+            region = rain_places.Box(arcs, np.asarray(obj.matrix_world, float)[None, :3], -half, half)
+            found = [(np.asarray(o.matrix_world.translation, float), o.data.energy) for o in _lamps(scene) if o.data.type != "SUN"]
+            for sentence in sight.warnings(suns, view, [region], rain_places.lamps(found, [region], strongest)):
                 self.report({"WARNING"}, sentence)
         return {"FINISHED"}
 
@@ -80,15 +89,19 @@ class OPAL_OT_add_rain(bpy.types.Operator):
             self.layout.prop(self, name)
 
 
-def _suns(context: bpy.types.Context) -> list[Any]:
-    """Directions to the scene's suns, brightest first."""
+def _lamps(scene: bpy.types.Scene) -> list[bpy.types.Object]:
+    """The lamps that a render sees."""
+    return [o for o in scene.objects if o.type == "LIGHT" and not o.hide_render and o.data.energy > 0.0]
+
+
+def _suns(context: bpy.types.Context) -> tuple[list[Any], float]:
+    """Directions to the scene's suns, and the irradiance of the strongest, W/m²."""
     import numpy as np
 
-    lamps = [o for o in context.scene.objects if o.type == "LIGHT" and o.data.type == "SUN" and not o.hide_render and o.data.energy > 0.0]
+    suns = [o for o in _lamps(context.scene) if o.data.type == "SUN"]
     context.view_layer.update()
-    lamps.sort(key=lambda o: -o.data.energy)
-    columns = [np.asarray(o.matrix_world, float)[:3, 2] for o in lamps]
-    return [axis / np.linalg.norm(axis) for axis in columns]
+    columns = [np.asarray(o.matrix_world, float)[:3, 2] for o in suns]
+    return [axis / np.linalg.norm(axis) for axis in columns], max((o.data.energy for o in suns), default=0.0)
 
 
 def _camera(scene: bpy.types.Scene) -> tuple[Any, Any]:

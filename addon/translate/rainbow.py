@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from opal_kernels import droplets
 from opal_kernels.descriptions import Density, Light, LightType, MediumLayer
-from opal_kernels.optics.rainbow import sight
+from opal_kernels.optics.rainbow import drops as sizes
+from opal_kernels.optics.rainbow import rain_places, sight
 from opal_kernels.scene import Scene
 
 from .. import rainbow_tables
@@ -35,7 +36,7 @@ def drops_of(rainbow: Any, elevations: Sequence[float] = ()) -> droplets.Drops:
     return droplets.Drops(
         theory=rainbow.theory,
         radius_um=round(rainbow.radius * 1000.0, 4),
-        spread=0.0 if single else round(rainbow.spread, 6),
+        spread=0.0 if single else 1.0 if rainbow.distribution == "MARSHALL_PALMER" else round(rainbow.spread, 6),
         distribution="LOG_NORMAL" if single else rainbow.distribution,
         celsius=20.0 if custom else round(rainbow.temperature, 3),
         salinity=round(rainbow.salinity, 3) if rainbow.liquid == "SEA_WATER" else 0.0,
@@ -45,6 +46,18 @@ def drops_of(rainbow: Any, elevations: Sequence[float] = ()) -> droplets.Drops:
         flattening=round(flattening, 5),
         elevations=droplets.elevation_nodes(elevations) if flattening > 0.0 else (),
     )
+
+
+def refusal(rainbow: Any) -> str:
+    """Why there are no drops as `OpalRainbowProperties` says them, in its own names and units; empty where they can be."""
+    least, most = sizes.SMALLEST_UM / 1000.0, sizes.LARGEST_UM / 1000.0
+    drops = drops_of(rainbow)
+    if not least <= drops.radius_um / 1000.0 <= most:
+        return f"Radius must lie between {least:g} and {most:g} mm, not {rainbow.radius:g} mm."
+    if not 0.0 <= drops.spread <= sizes.LARGEST_SPREAD:
+        return f"Spread must lie between 0 and {sizes.LARGEST_SPREAD:g}, not {rainbow.spread:g}."
+    sentence = droplets.index_refusal(drops)
+    return f"Index and Dispersion give {sentence}." if sentence else ""
 
 
 class Rain:
@@ -63,11 +76,18 @@ class Rain:
     def __init__(self, scene: Scene, report: Report, stage: Callable[..., None]) -> None:
         self._scene, self._report, self._stage = scene, report, stage
         self._lights: list[Light] = []
+        self._regions: list[rain_places.Box | rain_places.Air] = []
         self.present = False
 
     def begin(self, lights: Sequence[Light]) -> None:
         """The lamps of the scene, as they were read."""
         self._lights = list(lights)
+
+    def stands(self, materials: Sequence[Any], box: tuple[np.ndarray, np.ndarray], transforms: np.ndarray) -> None:
+        """Where the drops of a closed body are, if any of its materials are drops: its box, and box to world of its copies."""
+        for material in materials:
+            if material is not None and material.opal.kind == "RAINBOW" and not refusal(material.opal.rainbow):
+                self._regions.append(rain_places.Box(droplets.arcs(drops_of(material.opal.rainbow)), transforms, *box))
 
     def _suns(self) -> list[np.ndarray]:
         """Directions to the suns, unit vectors."""
@@ -99,6 +119,7 @@ class Rain:
                 "Scale Height",
             )
         drops, phase = self.phase(settings.rainbow)
+        self._regions.append(rain_places.Air(droplets.arcs(drops), settings.rainbow.extinction, settings.base_height))
         medium = self._scene.add_medium(
             settings.rainbow.extinction * drops.extinction_factor,
             1.0,
@@ -112,6 +133,8 @@ class Rain:
 
     def phase(self, rainbow: Any) -> tuple[droplets.Drops, Any]:
         """The drops and their phase function; errors as `add`."""
+        if sentence := refusal(rainbow):
+            raise ValueError(sentence)
         drops = drops_of(rainbow, [float(np.arcsin(np.clip(sun[2], -1.0, 1.0))) for sun in self._suns()])
 
         def told(done: float) -> None:
@@ -129,8 +152,10 @@ class Rain:
         ----------
         camera : opal_kernels.descriptions.Camera
         """
-        if not self.present:
+        if not self._regions:
             return
-        others = any(light.type != LightType.SUN for light in self._lights)
-        for sentence in sight.warnings(self._suns(), sight.View.of(camera), lamps=others):
+        strongest = max((light.power for light in self._lights if light.type == LightType.SUN), default=0.0)
+        found = [(np.asarray(light.transform, float)[:3, 3], light.power) for light in self._lights if light.type != LightType.SUN]
+        lamps = rain_places.lamps(found, self._regions, strongest)
+        for sentence in sight.warnings(self._suns(), sight.View.of(camera), self._regions, lamps):
             self._report.add("Rainbow", sentence)

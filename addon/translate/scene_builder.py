@@ -123,6 +123,8 @@ class SceneBuilder:
                 [self.materials.number(m, body if fills(m) or group.grids is not None else None) for m in group.materials or (None,)]
             )
             snapshot.bodies.append(body)
+            if body is not None and body.closed and body.box is not None:
+                self.rain.stands(group.materials, body.box, group.transforms)
 
         for name, sentence in visible.problems:  # grids have been read by now
             self._report.add(name, sentence, lost=True)

@@ -11,11 +11,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .descriptions import Phase, PhaseKind
 from .table_store import TableStore
+
+if TYPE_CHECKING:
+    from .optics.rainbow.arcs import Arcs
 
 # Belongs to every stored table's key: raise it when a table's numbers change.
 TABLE_VERSION = 8
@@ -232,6 +236,35 @@ def phase(drops: Drops, polarization: bool = True, store: TableStore | None = No
         elevations=np.asarray(drops.elevations or (0.0,)) if drops.flat else None,
         clocks=drops.clocks() if drops.flat else None,
     )
+
+
+def arcs(drops: Drops) -> Arcs:
+    """Where these drops show bows, glory and corona, for an eye that looks for them; errors as of `table` where the sizes cannot be."""
+    from .optics.rainbow import arcs, water
+    from .optics.rainbow import drops as sizes
+
+    index = _indices(drops, arcs.NM)
+    if index is None:
+        index = water.index(arcs.NM, drops.celsius, drops.salinity)
+    radii, weights = sizes.quadrature(drops.radius_um, drops.spread, drops.distribution)
+    area = weights * radii**2
+    return arcs.of(
+        index,
+        float((area * radii).sum() / area.sum()),
+        waves=not drops.theory.startswith("DESCARTES"),
+        glory=drops.theory == "MIE",
+        corona=drops.diffraction,
+    )
+
+
+def index_refusal(drops: Drops) -> str:
+    """Why an index that was given cannot be, as it is at the wavelengths of a table; empty where it can."""
+    wavelengths = drops.wavelengths()
+    index = _indices(drops, wavelengths)
+    if index is None or (np.isfinite(index) & (index > 1)).all():
+        return ""
+    worst = int(np.argmin(index))
+    return f"an index of {index[worst]:.3f} at {wavelengths[worst]:.0f} nm, and drops need one above 1"
 
 
 def elevation_nodes(heights: Sequence[float]) -> tuple[float, ...]:

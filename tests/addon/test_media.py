@@ -250,7 +250,7 @@ def test_haze_of_the_world_thins_with_height(tmp_path):
 
 def test_fog_without_end_says_that_it_hides_the_sky(tmp_path):
     scene = before_the_sky()
-    scene.world.opal.kind = "MEDIUM"
+    scene.world.opal.kind, scene.world.opal.scale_height = "MEDIUM", 0.0
     scene.world.opal.medium.extinction = 0.1
     stage.link("Sun", bpy.data.lights.new("Sun", "SUN"))
     assert mean(tmp_path) == pytest.approx(0, abs=1e-6)

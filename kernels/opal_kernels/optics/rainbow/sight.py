@@ -1,21 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where a bow stands for an eye: opposite the sun, and so high as the sun leaves room.
 
-The primary bow is a circle of about 42 degrees round the antisolar point, which lies as far under the horizon as the sun stands
-above it: the bow's top has the elevation 42 degrees minus the sun's. Azimuths here are from +Y (north) towards +X (east), as maps
-have them; +Z is up.
+A bow is a circle round the antisolar point, which lies as far under the horizon as the sun stands above it: the top of water's primary has
+the elevation 42 degrees minus the sun's. Which circles drops show is said by `arcs`, where the drops are by `rain_places`. Azimuths here are
+from +Y (north) towards +X (east), as maps have them; +Z is up.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-PRIMARY_RAD = np.radians(42.0)
-SECONDARY_RAD = np.radians(51.0)
+from opal_kernels.descriptions import CameraType
+from opal_kernels.optics.rainbow.arcs import Arcs
+from opal_kernels.optics.rainbow.rain_places import Air, Box, Lamps
+
 _STEPS = 720
 
 
@@ -29,17 +31,23 @@ class View:
         Columns: right, up and back of the camera in the world.
     window : tuple of 4 floats
         Left, right, bottom, top at distance 1.
+    eye : array (3,)
+        Where it stands, m.
+    parallel : bool
+        Whether it looks in one direction all over the frame.
     """
 
     axes: np.ndarray
     window: tuple[float, float, float, float]
+    eye: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    parallel: bool = False
 
     @classmethod
     def of(cls, camera: Any) -> View:
         """The view of a `descriptions.Camera`."""
-        axes = np.asarray(camera.transform, float)[:3, :3]
-        window = tuple(float(v) for v in camera.window)
-        return cls(axes / np.linalg.norm(axes, axis=0), window if camera.type == 0 else (-0.01, 0.01, -0.01, 0.01))
+        matrix = np.asarray(camera.transform, float)
+        axes, window = matrix[:3, :3], tuple(float(v) for v in camera.window)
+        return cls(axes / np.linalg.norm(axes, axis=0), window, matrix[:3, 3], camera.type == CameraType.ORTHOGRAPHIC)
 
     @property
     def forward(self) -> np.ndarray:
@@ -54,7 +62,7 @@ class View:
         return ahead & (right / safe >= left) & (right / safe <= right_edge) & (up / safe >= bottom) & (up / safe <= top)
 
 
-def circle(sun: np.ndarray, radius_rad: float = PRIMARY_RAD) -> np.ndarray:
+def circle(sun: np.ndarray, radius_rad: float) -> np.ndarray:
     """Return directions (n, 3) to a bow of this radius, all round, from its top on.
 
     Parameters
@@ -77,7 +85,7 @@ def elevation(direction: np.ndarray) -> float:
     return float(np.arcsin(np.clip(direction[2] / np.linalg.norm(direction), -1, 1)))
 
 
-def top_elevation(sun: np.ndarray, radius_rad: float = PRIMARY_RAD) -> float:
+def top_elevation(sun: np.ndarray, radius_rad: float) -> float:
     """Return the height of the bow's top over the horizon, radians: its radius minus the sun's height."""
     return radius_rad - elevation(sun)
 
@@ -87,19 +95,31 @@ def azimuth(direction: np.ndarray) -> float:
     return float(np.arctan2(direction[0], direction[1]) % (2 * np.pi))
 
 
-def visible(sun: np.ndarray, view: View, lowest_rad: float = -np.pi / 2) -> bool:
-    """Whether a part of the primary bow lies in the frame, not under an elevation, where the ground hides the drops."""
-    bow = circle(sun)
-    return bool((view.sees(bow) & (bow[:, 2] >= np.sin(lowest_rad))).any())
+def visible(sun: np.ndarray, view: View, region: Box | Air, everywhere: bool = False) -> bool:
+    """Whether a part of what the drops show under a sun lies in the frame, and drops are there (`everywhere`: or not)."""
+    at = np.concatenate([circle(sun, radius) for radius in region.arcs.radii])
+    at = at[view.sees(at)]
+    return bool(len(at) and (everywhere or region.crossed(view.eye, at).any()))
 
 
-def where_to_look(sun: np.ndarray) -> str:
-    """Return where the bow's top stands, as the end of a sentence."""
+def place(direction: np.ndarray) -> str:
+    """Return where a direction points, as the end of a sentence."""
+    turn, height = round(np.degrees(azimuth(direction))) % 360, round(np.degrees(elevation(direction)))
+    return f"azimuth {turn}° (from +Y towards +X), elevation {height}°"
+
+
+def where_to_look(sun: np.ndarray, arcs: Arcs) -> str:
+    """Return where the top of the primary bow stands, or of the secondary where only that is over the horizon, as the end of a sentence."""
+    radii = [radius for radius in (arcs.primary, arcs.secondary) if np.isfinite(radius)]
+    if not radii:
+        return place(-np.asarray(sun, float))
+    radius = next((radius for radius in radii if top_elevation(sun, radius) >= 0), radii[0])
     anti = -np.asarray(sun, float)
-    return f"azimuth {np.degrees(azimuth(anti)):.0f}° (from +Y towards +X), elevation {np.degrees(top_elevation(sun)):.0f}°"
+    # Over the zenith the top of a wide bow lies on the sun's side: its height alone would be told wrongly.
+    return place(circle(sun, radius)[0] if abs(anti[2]) < 1 - 1e-9 else anti)
 
 
-def warnings(suns: Sequence[np.ndarray], view: View, lamps: bool = False, lowest_rad: float = -np.pi / 2) -> list[str]:
+def warnings(suns: Sequence[np.ndarray], view: View, regions: Sequence[Box | Air], lamps: Lamps = Lamps.NONE) -> list[str]:
     """Return why a camera in rain sees no bow, one sentence a reason; empty where it may see one.
 
     Parameters
@@ -107,71 +127,44 @@ def warnings(suns: Sequence[np.ndarray], view: View, lamps: bool = False, lowest
     suns : sequence of arrays (3,)
         Unit vectors towards the suns.
     view : View
-    lamps : bool
-        Whether other lamps light the drops: their bows are wherever the lamps put them, and nothing is said.
-    lowest_rad : float
-        Elevation under which the ground hides the drops.
+    regions : sequence of Box or Air
+        Where the drops are, at least one.
+    lamps : Lamps
+        What other lamps are to the drops; the bows of near ones are wherever the lamps put them, and nothing is said.
     """
-    if lamps:
+    if lamps == Lamps.NEAR:
         return []
+    alone = ", and lamps light only drops close to them" if lamps == Lamps.FAR else ""
     if not suns:
-        return ["There is no sun in the scene: add a Sun lamp behind the camera, or the drops show no bow."]
+        return [f"There is no sun in the scene{alone}: add a Sun lamp behind the camera, or the drops show no bow."]
     risen = [sun for sun in suns if elevation(sun) > -1e-3]
     if not risen:
-        return ["The sun is below the horizon: drops over flat ground get none of its light and show no bow."]
-    if any(visible(sun, view, lowest_rad) for sun in risen):
+        return [f"The sun is below the horizon{alone}: drops over flat ground get none of its light and show no bow."]
+    if view.parallel:
+        return ["An orthographic camera looks in one direction all over the frame, where no bow can be: choose Perspective."]
+    if any(visible(sun, view, region) for sun in risen for region in regions):
         return []
     sun = max(risen, key=lambda s: float(-s @ view.forward))
-    if float(sun @ view.forward) > np.cos(np.radians(60)):
-        return [f"The camera looks towards the sun and a bow stands opposite it: turn it to {where_to_look(sun)}."]
-    if top_elevation(sun) < 0:
-        height = np.degrees(elevation(sun))
-        return [
-            f"The sun stands {height:.0f}° high, above 42°, so the whole bow lies below the horizon: lower the sun, or look down from a height "
-            f"to {where_to_look(sun)}."
-        ]
-    return [f"No bow is in the frame: the top of the bow stands at {where_to_look(sun)}."]
+    return [_why_not(sun, view, regions)]
 
 
-@dataclass(frozen=True)
-class Curtain:
-    """Where a wall of rain stands: its centre, its size (across, deep, high) and its turn about the vertical from facing -Y."""
-
-    centre: tuple[float, float, float]
-    size: tuple[float, float, float]
-    turn: float
-
-
-def curtain(
-    suns: Sequence[np.ndarray], view: View | None, eye: Sequence[float], distance: float, depth: float, ground: float = 0.0
-) -> Curtain:
-    """Return a wall of rain opposite the sun that an eye looks at best, wide and high enough for both bows.
-
-    Parameters
-    ----------
-    suns : sequence of arrays (3,)
-        Unit vectors towards the suns; without one that is up the wall stands before the camera.
-    view : View, optional
-        None looks along +Y.
-    eye : sequence of 3 floats
-        Where the camera is, m.
-    distance, depth : float
-        To the wall's near side and through it, m.
-    ground : float
-        Height that the rain falls to, m; the wall ends below the eye in any case.
-    """
-    forward = np.array([0.0, 1.0, 0.0]) if view is None else view.forward
-    risen = [sun for sun in suns if elevation(sun) > -1e-3]
-    ahead = -max(risen, key=lambda s: float(-s @ forward)) if risen else forward
-    flat = np.array([ahead[0], ahead[1]])
-    if np.linalg.norm(flat) < 1e-6:
-        flat = np.array([0.0, 1.0])
-    flat /= np.linalg.norm(flat)
-    far = distance + depth
-    reach = far * np.tan(SECONDARY_RAD + np.radians(5))
-    low = min(ground, eye[2] - 0.02 * far)
-    high = eye[2] + reach
-    centre = (eye[0] + flat[0] * (distance + depth / 2), eye[1] + flat[1] * (distance + depth / 2), (low + high) / 2)
-    return Curtain(
-        tuple(float(c) for c in centre), (float(2 * reach), float(depth), float(high - low)), float(np.arctan2(-flat[0], flat[1]))
-    )
+def _why_not(sun: np.ndarray, view: View, regions: Sequence[Box | Air]) -> str:
+    """One sentence on a bow that is not in the frame."""
+    arcs = regions[0].arcs
+    where = where_to_look(sun, arcs)
+    if arcs.glory:
+        where += f"; the glory is at {place(-sun)}"
+    if arcs.corona:
+        where += f"; the corona is round the sun, at {place(sun)}"
+    elif float(sun @ view.forward) > np.cos(np.radians(60)):
+        return f"The camera looks towards the sun and a bow stands opposite it: turn it to {where}."
+    widest = np.nanmax([arcs.primary, arcs.secondary, 0.0])
+    if top_elevation(sun, widest) < 0:
+        return (
+            f"The sun stands {np.degrees(elevation(sun)):.0f}° high, above {np.degrees(widest):.0f}°, so every bow lies below the horizon: "
+            f"lower the sun, or look down from a height to {where}."
+        )
+    which = "secondary bow" if not top_elevation(sun, arcs.primary) >= 0 else "bow"
+    if any(visible(sun, view, region, everywhere=True) for region in regions):
+        return f"The frame holds the place of a bow, but no drops are there: the top of the {which} stands at {where}."
+    return f"No bow is in the frame: the top of the {which} stands at {where}."
