@@ -13,9 +13,10 @@ from typing import Any
 
 import numpy as np
 from opal_kernels.descriptions import Attribute, Camera, Light, World
+from opal_kernels.mesh_bodies import NO_GEM
 from opal_kernels.scene import Scene
 
-from ..identity import Named
+from ..identity import Named, key_of
 from ..report import Report
 from .gem_meshes import mend_gem_mesh
 from .instances import Group, Visible, collect
@@ -196,8 +197,9 @@ class SceneBuilder:
             arrays = snapshot.meshes[key] = read_mesh(group.mesh, needs)
             for sentence in arrays.problems if arrays is not None else ():
                 self._report.add(group.name, sentence, lost=True)
-            if arrays is not None and (gems := [m for m in group.materials if m is not None and m.opal.kind == "GEM"]):
-                for sentence in mend_gem_mesh(arrays, only_gems=len(gems) == len(group.materials)):
+            gems = [key_of(m) if m is not None and m.opal.kind == "GEM" else None for m in group.materials]
+            if arrays is not None and any(gem is not None for gem in gems):
+                for sentence in mend_gem_mesh(arrays, [NO_GEM if gem is None else gems.index(gem) for gem in gems]):
                     self._report.add(group.name, sentence)
         group.mesh = None
         return key
