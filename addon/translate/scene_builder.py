@@ -45,6 +45,7 @@ class Snapshot:
     materials: list[list[int]] = field(default_factory=list)  # kernel numbers, a list a group
     meshes: dict[int, MeshArrays | None] = field(default_factory=dict)  # by the address the mesh had
     mesh_of_group: list[int] = field(default_factory=list)
+    has_gem: list[bool] = field(default_factory=list)  # whether any of a group's materials is a gem
     lights: list[tuple[Light, str]] = field(default_factory=list)
     bodies: list[Body | None] = field(default_factory=list)  # what a group's materials fill
     world: World | None = None
@@ -124,6 +125,7 @@ class SceneBuilder:
                 [self.materials.number(m, body if fills(m) or group.grids is not None else None) for m in group.materials or (None,)]
             )
             snapshot.bodies.append(body)
+            snapshot.has_gem.append(any(m is not None and m.opal.kind == "GEM" for m in group.materials))
 
         for name, sentence in visible.problems:  # grids have been read by now
             self._report.add(name, sentence, lost=True)
