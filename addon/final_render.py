@@ -14,6 +14,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+import bpy
 import numpy as np
 from opal_kernels import denoise, memory
 from opal_kernels.binding import Cancelled, OpalError
@@ -23,7 +24,9 @@ from opal_kernels.scene import Scene
 
 from . import capture as captures
 from . import film_files, main_thread, report, settings, spectral_exr
+from .identity import Named
 from .render_passes import RenderPass, wanted
+from .translate import clipping
 from .translate.camera import camera_from_object
 from .translate.scene_builder import SceneBuilder, Stopped
 
@@ -153,10 +156,16 @@ class _FinalRender:
                 report=self.report.add,
             )
             builder.rain.look(camera)
+            self._tell_of_hidden_gems(camera, snapshot)
             return builder.finish(snapshot, camera)
         except BaseException:
             builder.scene.close()
             raise
+
+    def _tell_of_hidden_gems(self, camera: Any, snapshot: Any) -> None:
+        if hidden := clipping.hidden_gems(camera, snapshot):
+            start = bpy.utils.units.to_string(self.scene.unit_settings.system, "LENGTH", camera.clip_start, precision=4)
+            self.report.add(Named(self._camera()), clipping.sentence(hidden, start), "Clip Start", lost=True)
 
     def _undisturbed(self, read: Callable[[], Any], depsgraph: Any) -> Any:
         """Reads while nothing can be deleted; what went before is refused, for Blender's list of instances would look for it."""

@@ -151,6 +151,7 @@ class OpalGemProperties(bpy.types.PropertyGroup):
     last_good: FloatVectorProperty(size=8, default=(*_DIAMOND_CAUCHY, *_DIAMOND_B, *_DIAMOND_C), options={"HIDDEN"})
     last_good_dispersion: StringProperty(default="SELLMEIER", options={"HIDDEN"})
     last_good_absorption: FloatVectorProperty(size=4, default=(1.0, 1.0, 1.0, 0.005), options={"HIDDEN"})
+    last_good_source: StringProperty(default="", options={"HIDDEN"})  # empty in files from before it was kept
 
 
 CLASSES = (OpalAbsorptionSample, OpalGemProperties)

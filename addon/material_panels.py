@@ -63,6 +63,8 @@ class OPAL_MATERIAL_PT_gem(_MaterialPanel):
         layout.prop(gem, "species")
         if gem.refusal:
             layout.label(text=gem.refusal, icon="ERROR")
+        if gem.species != presets.CUSTOM and presets.species_of(gem) == presets.CUSTOM:
+            layout.label(text="Rendered by its numbers, which are not the species' own", icon="INFO")
         _draw_read_out(layout, gem)
         curve_icons.draw(layout, presets.index_chart(gem))
         layout.prop(gem, "roughness")

@@ -15,6 +15,9 @@ CUSTOM = "CUSTOM"
 
 # Blender keeps the strings of a dynamic enumeration by reference only: they have to live here.
 _items: list[tuple[str, str, str, int]] = []
+_items_of_31_bits: list[tuple[str, str, str, int]] = []
+# True while a file is read whose species have the numbers of layout 1.
+_reading_31_bits = False
 # True while this module writes properties itself, so that their callbacks stay silent.
 _filling = False
 
@@ -26,19 +29,69 @@ def species_items(_owner: Any = None, _context: Any = None) -> list[tuple[str, s
 
         _items.append((CUSTOM, "Custom", "The numbers below, as they are", 0))
         for name, row in species.table().items():
-            _items.append((name, row.label, f"{row.label}: index of refraction after {row.source}", species_number(name)))
-    return _items
+            note = f". {row.note}" if row.note else ""
+            _items.append((name, row.label, f"{row.label}: index of refraction after {row.source}{note}", species_number(name)))
+        _items_of_31_bits.extend((*item[:3], item[3] and zlib.crc32(item[0].encode()) & 0x7FFFFFFF) for item in _items)
+    return _items_of_31_bits if _reading_31_bits else _items
 
 
 def species_number(name: str) -> int:
-    """What a species is saved as: a number made of its name, so that rows may come and go in the table."""
-    return zlib.crc32(name.encode()) & 0x7FFFFFFF
+    """What a species is saved as: a number made of its name, so that rows may come and go in the table.
+
+    Keyframes hold single precision and are rounded by adding a half, which keeps whole numbers of 23 bits.
+    """
+    return zlib.crc32(name.encode()) & 0x7FFFFF
+
+
+def renumber_species(gems: list[Any]) -> None:
+    """Species of files of layout 1, which were saved as numbers of 31 bits, get those of this version."""
+    global _filling, _reading_31_bits
+    _reading_31_bits = True
+    try:
+        names = [gem.species for gem in gems]
+    finally:
+        _reading_31_bits = False
+    _filling = True
+    try:
+        for gem, name in zip(gems, names, strict=True):
+            if name:
+                gem.species = name
+    finally:
+        _filling = False
+
+
+def is_unknown(gem: Any) -> bool:
+    """Whether a gem's species is none of this version's, such as one of a newer file."""
+    from opal_kernels.optics import species
+
+    return gem.species != CUSTOM and gem.species not in species.table()
+
+
+def species_of(gem: Any) -> str:
+    """The species by whose own tables a gem is rendered; CUSTOM where that is its numbers.
+
+    Drivers and keyframes write numbers without the interface's callbacks: what differs from what the species filled in makes
+    the stone Custom as an edit does.
+    """
+    if is_unknown(gem) or _index_differs(gem) or _absorption_differs(gem) or gem.last_good_source not in ("", gem.absorption_source):
+        return CUSTOM
+    return gem.species
+
+
+def _index_differs(gem: Any) -> bool:
+    return _index_numbers(gem) != tuple(gem.last_good) or gem.dispersion != gem.last_good_dispersion
+
+
+def _absorption_differs(gem: Any) -> bool:
+    return (*gem.absorption_color, gem.absorption_depth) != tuple(gem.last_good_absorption)
 
 
 def settings_of(gem: Any) -> Any:
     """The `opal_kernels.gem.Settings` that a gem's properties show."""
     from opal_kernels.gem import Settings
 
+    # A color that was driven away from a species' counts before the species' curve, as an edited one does.
+    by_curve = gem.absorption_source == "CURVE" and (gem.species == CUSTOM or not _absorption_differs(gem))
     return Settings(
         dispersion=gem.dispersion,
         cauchy=(gem.cauchy_b, gem.cauchy_c),
@@ -46,7 +99,7 @@ def settings_of(gem: Any) -> Any:
         sellmeier_c=tuple(gem.sellmeier_c),
         absorption_color=tuple(gem.absorption_color),
         absorption_depth=gem.absorption_depth,
-        absorption_curve=curve_of(gem) if gem.absorption_source == "CURVE" else None,
+        absorption_curve=curve_of(gem) if by_curve else None,
     )
 
 
@@ -71,7 +124,7 @@ def set_curve(gem: Any, samples: Any) -> None:
             sample = gem.absorption_curve.add()
             sample.wavelength, sample.absorption = nm, value
             sample.last_good = nm, value
-        gem.absorption_source = "CURVE"
+        gem.absorption_source = gem.last_good_source = "CURVE"
         gem.refusal = ""
     finally:
         _filling = filling
@@ -92,8 +145,8 @@ def read_out(gem: Any) -> Any:
     """The `opal_kernels.gem.ReadOut` of a gem; None where its numbers cannot be rendered."""
     from opal_kernels import gem as gems
 
-    if gem.species != CUSTOM:
-        return gems.read_out_of_species(gem.species)
+    if (name := species_of(gem)) != CUSTOM:
+        return gems.read_out_of_species(name)
     settings = settings_of(gem)
     return None if gems.refusal(settings) else gems.read_out(settings)
 
@@ -105,8 +158,8 @@ def index_chart(gem: Any) -> Any:
     from opal_kernels.descriptions import wavelengths
     from opal_kernels.optics import species
 
-    if gem.species != CUSTOM:
-        return wavelength_curve.index_chart(species.index(gem.species, wavelengths()))
+    if (name := species_of(gem)) != CUSTOM:
+        return wavelength_curve.index_chart(species.index(name, wavelengths()))
     settings = settings_of(gem)
     return None if gems.refusal(settings) else wavelength_curve.index_chart(gems.index(settings))
 
@@ -138,11 +191,22 @@ def _index_numbers(gem: Any) -> tuple[float, ...]:
 
 
 def _keep(gem: Any) -> None:
-    """Remembers the index's numbers as the last good ones."""
+    """Remembers a gem's numbers as the last good ones."""
     gem.last_good = _index_numbers(gem)
     gem.last_good_dispersion = gem.dispersion
     gem.last_good_absorption = (*gem.absorption_color, gem.absorption_depth)
+    gem.last_good_source = gem.absorption_source
     gem.refusal = ""
+
+
+def _index_refusal(gem: Any) -> str:
+    """Why a gem's index cannot be: by the formula in use, or by the other one if its numbers were edited; empty where it can."""
+    from opal_kernels import gem as gems
+
+    settings, numbers, good = settings_of(gem), _index_numbers(gem), tuple(gem.last_good)
+    edited = [name for name, part in (("CAUCHY", slice(0, 2)), ("SELLMEIER", slice(2, 8))) if numbers[part] != good[part]]
+    refusals = (gems.refusal(dataclasses.replace(settings, dispersion=name)) for name in (gem.dispersion, *edited))
+    return next((sentence for sentence in refusals if sentence), "")
 
 
 def on_species(gem: Any, _context: Any = None) -> None:
@@ -163,15 +227,11 @@ def on_species(gem: Any, _context: Any = None) -> None:
 def on_index(gem: Any, _context: Any = None) -> None:
     """After an edit of the index: Custom if the numbers can be rendered, else the last good ones and a sentence."""
     global _filling
-    if _filling:
+    if _filling or not _index_differs(gem):  # Blender calls twice for one element of a vector
         return
-    from opal_kernels import gem as gems
-
-    if _index_numbers(gem) == tuple(gem.last_good) and gem.dispersion == gem.last_good_dispersion:
-        return  # Blender calls twice for one element of a vector
     _filling = True
     try:
-        if sentence := gems.refusal(settings_of(gem)):
+        if sentence := _index_refusal(gem):
             good = tuple(gem.last_good)
             gem.dispersion = gem.last_good_dispersion
             gem.cauchy_b, gem.cauchy_c = good[:2]
@@ -187,12 +247,10 @@ def on_index(gem: Any, _context: Any = None) -> None:
 def on_absorption(gem: Any, _context: Any = None) -> None:
     """After an edit of colour or depth: the stone absorbs by them and is no longer its species', or the last good ones stay."""
     global _filling
-    if _filling:
+    if _filling or not _absorption_differs(gem):
         return
     from opal_kernels import gem as gems
 
-    if (*gem.absorption_color, gem.absorption_depth) == tuple(gem.last_good_absorption):
-        return
     _filling = True
     try:
         settings = settings_of(gem)
@@ -203,6 +261,7 @@ def on_absorption(gem: Any, _context: Any = None) -> None:
         else:
             gem.species, gem.absorption_source = CUSTOM, "COLOR"
             gem.last_good_absorption = (*gem.absorption_color, gem.absorption_depth)
+            gem.last_good_source = "COLOR"
             gem.refusal = ""
     finally:
         _filling = False
@@ -222,6 +281,7 @@ def on_absorption_source(gem: Any, _context: Any = None) -> None:
             gem.absorption_source = "COLOR"
         else:
             gem.species = CUSTOM
+            gem.last_good_source = gem.absorption_source
         gem.refusal = sentence
     finally:
         _filling = False

@@ -10,6 +10,7 @@ LABELS = {
     "Animation and Farm": "Animation und Farm",
     "Beam Shape": "Strahlform",
     "Clouded": "Getrübt",
+    "Rendered by its numbers, which are not the species' own": "Nach seinen Zahlen gerendert, die nicht die der Art sind",
     "Comparison with Cycles": "Vergleich mit Cycles",
     "Cycles and EEVEE Twin": "Zwilling für Cycles und EEVEE",
     "Denoise": "Entrauschen",

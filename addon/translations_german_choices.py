@@ -279,7 +279,7 @@ NAMES = {
     "Tourmaline, green": "Turmalin, grün",
     "Tanzanite": "Tansanit",
     "Alexandrite": "Alexandrit",
-    "Opal glass": "Opalglas",
+    "Opal glass, clear": "Opalglas, klar",
     "Yttrium aluminium garnet": "Yttrium-Aluminium-Granat",
     "Strontium titanate": "Strontiumtitanat",
     "Fused silica": "Quarzglas",

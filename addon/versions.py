@@ -24,8 +24,15 @@ def _twins_of_files_without(_scenes: list[Any]) -> None:
         twins.follow(owner.opal)
 
 
+def _species_of_31_bits(_scenes: list[Any]) -> None:
+    """Layout 2: species are numbers that a keyframe can hold."""
+    from . import presets
+
+    presets.renumber_species([material.opal.gem for material in bpy.data.materials])
+
+
 # What brings a file from layout n to n + 1, n being the position.
-_STEPS: list[Callable[[list[Any]], None]] = [_twins_of_files_without]
+_STEPS: list[Callable[[list[Any]], None]] = [_twins_of_files_without, _species_of_31_bits]
 
 
 def current() -> int:

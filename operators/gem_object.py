@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import bpy
+
+from ..addon import presets
 
 if TYPE_CHECKING:
     from opal_kernels.cuts import Stone
@@ -34,7 +36,7 @@ def mesh_from_stone(stone: Stone, name: str, smooth: Sequence[str] = ()) -> bpy.
 
 
 def gem_material(species: str, index: float | None = None) -> bpy.types.Material:
-    """The gem material of a species, made once a file.
+    """The gem material of a species: one that is there and as new, or a new one.
 
     Parameters
     ----------
@@ -44,10 +46,7 @@ def gem_material(species: str, index: float | None = None) -> bpy.types.Material
         With the species ``CUSTOM``: an index of refraction without dispersion.
     """
     name = label_of(species) if index is None else f"Gem {index:.3f}"
-    for material in bpy.data.materials:
-        if material.name.split(".")[0] == name.split(".")[0] and material.opal.kind == "GEM" and material.opal.gem.species == species:
-            if index is None or abs(material.opal.gem.cauchy_b - index) < 1e-6:
-                return material
+    known = [m for m in bpy.data.materials if m.name.split(".")[0] == name.split(".")[0] and m.opal.kind == "GEM"]
     material = bpy.data.materials.new(name)
     material.opal.kind = "GEM"
     material.opal.gem.species = species
@@ -55,7 +54,20 @@ def gem_material(species: str, index: float | None = None) -> bpy.types.Material
         material.opal.gem.dispersion = "CAUCHY"
         material.opal.gem.cauchy_b = index
         material.opal.gem.cauchy_c = 0.0
-    return material
+    wanted = _settings(material)
+    same = next((other for other in known if other.animation_data is None and _settings(other) == wanted), None)
+    if same is None:
+        return material
+    bpy.data.materials.remove(material)
+    return same
+
+
+def _settings(material: bpy.types.Material) -> list[Any]:
+    """All that an artist can have changed on a gem."""
+    gem = material.opal.gem
+    shown = [prop for prop in gem.bl_rna.properties if not prop.is_hidden and prop.type in {"BOOLEAN", "INT", "FLOAT", "STRING", "ENUM"}]
+    values = [tuple(getattr(gem, p.identifier)) if getattr(p, "is_array", False) else getattr(gem, p.identifier) for p in shown]
+    return [*values, material.opal.use_medium, presets.curve_of(gem)]
 
 
 def label_of(species: str) -> str:

@@ -108,11 +108,11 @@ class OPAL_OT_gem_report(bpy.types.Operator):
     def _prepare(self, context: bpy.types.Context) -> bool:
         obj = context.active_object
         try:
-            stone = _stone_of(obj, context.evaluated_depsgraph_get())
+            stone, notes = _stone_of(obj, context.evaluated_depsgraph_get())
         except ValueError as error:
             self.report({"ERROR"}, f"“{obj.name}”: {error}")
             return False
-        self._work = _Work(self, stone, obj.name)
+        self._work = _Work(self, stone, obj.name, notes)
         return True
 
     def _finish(self) -> set[str]:
@@ -123,6 +123,8 @@ class OPAL_OT_gem_report(bpy.types.Operator):
         if work.page is None:
             self.report({"INFO"}, "The gem report was stopped.")
             return {"CANCELLED"}
+        for note in work.notes:
+            self.report({"WARNING"}, f"“{work.title}”: {note}")
         image = image_files.to_image(_NAME, work.page)
         text = image_files.to_text(_NAME, work.table)
         if self.filepath:
@@ -142,8 +144,8 @@ class OPAL_OT_gem_report(bpy.types.Operator):
         return {"FINISHED"}
 
 
-def _stone_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Any:
-    """An object as the `opal_kernels.gem_report.FacetedStone` it is at its scale; ValueError says what is wrong with it."""
+def _stone_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> tuple[Any, list[str]]:
+    """An object as the `opal_kernels.gem_report.FacetedStone` it is at its scale, and what that leaves out; ValueError says what is wrong."""
     import numpy as np
     from opal_kernels import gem as gems
     from opal_kernels.gem_report import FacetedStone
@@ -152,30 +154,61 @@ def _stone_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Any:
     from ..addon.translate.meshes import read_mesh
 
     evaluated = obj.evaluated_get(depsgraph)
-    material = next((slot.material for slot in evaluated.material_slots if slot.material and slot.material.opal.kind == "GEM"), None)
-    if material is None:
+    materials = [slot.material for slot in evaluated.material_slots]
+    gems_of_slots = [material for material in materials if material and material.opal.kind == "GEM"]
+    if not gems_of_slots:
         raise ValueError("the stone has no material of the kind Gem")
-    gem = material.opal.gem
-    if gem.species == presets.CUSTOM and (sentence := gems.refusal(presets.settings_of(gem))):
-        raise ValueError(sentence)
     arrays = read_mesh(evaluated.data)
     if arrays is None:
         raise ValueError("the stone has no faces")
+    slots = arrays.material_slots if arrays.material_slots is not None else np.zeros(1, int)
+    used = [materials[slot] for slot in np.unique(np.clip(slots, 0, len(materials) - 1))]
+    material = next((m for m in used if m in gems_of_slots), gems_of_slots[0])
+    gem = material.opal.gem
+    if presets.species_of(gem) == presets.CUSTOM and (sentence := gems.refusal(presets.settings_of(gem))):
+        raise ValueError(sentence)
     scale = np.array(evaluated.matrix_world.to_scale())
     positions = arrays.positions.astype(float) * scale
     if not np.isfinite(positions).all() or not (scale != 0).all():
         raise ValueError("the stone is scaled to nothing or has corners that are not finite")
     triangles = arrays.triangles if scale.prod() > 0 else arrays.triangles[:, ::-1]
     index, absorption = gem_spectra(gem)
-    return FacetedStone(positions, triangles, index, absorption)
+    others = [m.name if m else "none" for m in used if m != material]
+    notes = _left_out(material, others, smooth=arrays.corner_normals is not None)
+    return FacetedStone(positions, triangles, index, absorption), notes
+
+
+def _left_out(material: bpy.types.Material, others: list[str], smooth: bool) -> list[str]:
+    """Sentences on what the report does not regard.
+
+    Parameters
+    ----------
+    others : list of str
+        Names of the other materials on the stone's faces.
+    smooth : bool
+        Whether faces are shaded as parts of a curved surface.
+    """
+    gem = material.opal.gem
+    notes = []
+    if gem.roughness > 0:
+        notes.append(f"the roughness of “{material.name}” ({gem.roughness:.2f}) is ignored: the stone is judged polished")
+    if gem.fresnel != "EXACT":
+        notes.append(f"Schlick's approximation of “{material.name}” is ignored: the shares are those of exact Fresnel reflection")
+    if material.opal.use_medium:
+        notes.append(f"the clouding of “{material.name}” is ignored: the stone is judged clear")
+    if others:
+        notes.append(f"every face is judged as “{material.name}”, those of other materials ({', '.join(others)}) as well")
+    if smooth:
+        notes.append("its smooth faces are judged as small flat facets: fire, which compares light through the same facets, means little")
+    return notes
 
 
 class _Work(threading.Thread):
     """The report; it can be made in the operator's own thread or beside Blender's. It touches none of Blender's data."""
 
-    def __init__(self, settings: OPAL_OT_gem_report, stone: Any, title: str) -> None:
+    def __init__(self, settings: OPAL_OT_gem_report, stone: Any, title: str, notes: list[str]) -> None:
         super().__init__(name="Opal gem report", daemon=True)
-        self._stone, self.title = stone, title
+        self._stone, self.title, self.notes = stone, title, notes
         self._size, self._passes = settings.size, settings.passes
         self._head = 0.5 * settings.head_angle
         self._tilt, self._tilt_steps = math.degrees(settings.tilt), settings.tilt_steps
@@ -203,8 +236,8 @@ class _Work(threading.Thread):
             self.result = gem_report.measure(self._stone, tilts, self._head, progress=self._part(0.0, 0.3))
             picture = gem_report.face_up(self._stone, self._size, self._passes, self._head, self._part(0.3, 0.65))
             fire = gem_report.flashes(self._stone, self._size, self._passes, self._head, self._part(0.65, 1.0))
-            self.table = gem_report.table(self.result, self.title)
-            self.page = gem_report.draw(self.result, picture, fire, self.title)
+            self.table = gem_report.table(self.result, self.title, self.notes)
+            self.page = gem_report.draw(self.result, picture, fire, self.title, self.notes)
         except gem_report.Cancelled:
             pass
         except (OpalError, ValueError, MemoryError) as error:

@@ -38,7 +38,7 @@ class OPAL_OT_import_absorption(bpy.types.Operator, ImportHelper):
 
         material, path = _gem(context), Path(bpy.path.abspath(self.filepath))
         try:
-            nm, per_mm = curves.parse(path.read_text(encoding="utf-8", errors="replace"))
+            nm, per_mm, ignored = curves.parse(path.read_text(encoding="utf-8", errors="replace"))
         except OSError as error:
             self.report({"ERROR"}, f"{path.name} cannot be read: {error.strerror or error}")
             return {"CANCELLED"}
@@ -46,7 +46,8 @@ class OPAL_OT_import_absorption(bpy.types.Operator, ImportHelper):
             self.report({"ERROR"}, f"{path.name}: {error}")
             return {"CANCELLED"}
         presets.take_curve(material.opal.gem, zip(nm.tolist(), per_mm.tolist(), strict=True))
-        self.report({"INFO"}, f"{material.name}: {len(nm)} samples from {nm[0]:g} to {nm[-1]:g} nm")
+        further = "" if not ignored else "; a further column is ignored" if ignored == 1 else f"; {ignored} further columns are ignored"
+        self.report({"INFO"}, f"{material.name}: {len(nm)} samples from {nm[0]:g} to {nm[-1]:g} nm{further}")
         return {"FINISHED"}
 
 

@@ -45,21 +45,36 @@ class OPAL_OT_import_gemcad(bpy.types.Operator, ImportHelper):
     def execute(self, context: bpy.types.Context) -> set[str]:
         from opal_kernels.cuts import gemcad
 
-        path = Path(self.filepath)
+        path = Path(bpy.path.abspath(self.filepath))
         try:
             design = gemcad.parse(gemcad.decode(path.read_bytes()))
-            stone = design.cut().scaled(self.size)
-        except (OSError, gemcad.GemCadError) as error:
-            self.report({"ERROR"}, f"{path.name}: {error}" if isinstance(error, ValueError) else str(error))
+            as_designed = design.cut()
+        except OSError as error:
+            self.report({"ERROR"}, f"{path.name} cannot be read: {error.strerror or error}")
             return {"CANCELLED"}
+        except gemcad.GemCadError as error:
+            self.report({"ERROR"}, f"{path.name}: {error}")
+            return {"CANCELLED"}
+        stone = as_designed.scaled(self.size)
         mesh = gem_object.mesh_from_stone(stone, path.stem)
         index = design.refractive_index if self.species == gem_object.CUSTOM and design.refractive_index else None
         mesh.materials.append(gem_object.gem_material(self.species, index))
         object_data_add(context, mesh)
+        if self.species == gem_object.CUSTOM and index is None:
+            self.report({"WARNING"}, f"{path.name} gives no refractive index (line I): the stone has diamond's; choose a species")
+        if outside := design.outside(as_designed):
+            lie = "1 facet lies" if len(outside) == 1 else f"{len(outside)} facets lie"
+            self.report({"WARNING"}, f"{path.name}: {lie} outside the stone and cut nothing: {_listed(outside)}")
         self.report(
             {"INFO"}, f"{' '.join(design.headers) or path.stem}: {stone.facet_count()} facets, {gem_object.weight(stone, self.species)}"
         )
         return {"FINISHED"}
+
+
+def _listed(names: list[str], most: int = 6) -> str:
+    """Different names, each once and the first few only."""
+    different = list(dict.fromkeys(names))
+    return ", ".join(different[:most]) + (", …" if len(different) > most else "")
 
 
 def register() -> None:

@@ -26,7 +26,7 @@ _VISIBILITY = (
     ("visible_shadow", 16),
     ("visible_volume_scatter", 32),
 )
-_CAMERA = 1
+SEEN_BY_CAMERA = 1
 # Determinant below which a matrix cannot be inverted in single precision: a scale of 1e-10.
 _SMALLEST_VOLUME = 1e-30
 
@@ -173,7 +173,7 @@ class _LayerContext:
         original = (source if source is not None else obj).original
         holdout = obj.is_holdout or original.holdout_get(view_layer=self.layer)
         if original.indirect_only_get(view_layer=self.layer):
-            visibility &= ~_CAMERA
+            visibility &= ~SEEN_BY_CAMERA
         materials = self._materials(obj, source, mesh)
         if not instance.is_instance and not instance.show_self:
             visibility = 0

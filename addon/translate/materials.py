@@ -206,11 +206,11 @@ def program_content(compiled: Any) -> tuple:
 
 
 def _gem_refusals(gem: Any) -> list[str]:
-    """Sentences on numbers that no gem can have."""
-    if gem.species != presets.CUSTOM:
+    """Sentences on numbers that no gem can have, and on a species that there is not."""
+    if presets.species_of(gem) != presets.CUSTOM:
         return []
     settings = presets.settings_of(gem)
-    sentences = []
+    sentences = ["Its species is none that this version of Opal knows; it is rendered by its numbers."] if presets.is_unknown(gem) else []
     if sentence := gems.refusal(settings):
         sentences.append(sentence + " The gem is rendered with an index of 1.5.")
     if sentence := gems.absorption_refusal(settings):
@@ -221,7 +221,7 @@ def _gem_refusals(gem: Any) -> list[str]:
 def _gem_tables(gem: Any, absorption_scale: float) -> tuple[Any, Any]:
     """`gem_spectra` as rendered: an index of 1.5 for one that cannot be, and the absorption scaled."""
     index, absorption = gem_spectra(gem)
-    if gem.species == presets.CUSTOM and gems.refusal(presets.settings_of(gem)):
+    if presets.species_of(gem) == presets.CUSTOM and gems.refusal(presets.settings_of(gem)):
         index[:] = 1.5
     return index, None if absorption is None else absorption * absorption_scale
 
@@ -244,8 +244,9 @@ def fills(material: Any) -> bool:
 
 def gem_spectra(gem: Any) -> tuple[Any, Any]:
     """n and σa (1/m, or None) at 360 ... 830 nm of a gem: the species' own tables, or what its numbers say."""
-    if gem.species == presets.CUSTOM:
+    name = presets.species_of(gem)
+    if name == presets.CUSTOM:
         settings = presets.settings_of(gem)
         return gems.index(settings), None if gems.absorption_refusal(settings) else gems.absorption(settings)
-    index, absorption = species.index(gem.species, wavelengths()), species.absorption(gem.species, wavelengths())
+    index, absorption = species.index(name, wavelengths()), species.absorption(name, wavelengths())
     return index, absorption if absorption.any() else None

@@ -13,9 +13,10 @@ from typing import Any
 
 import numpy as np
 from opal_kernels.descriptions import Attribute, Camera, Light, World
+from opal_kernels.mesh_bodies import NO_GEM
 from opal_kernels.scene import Scene
 
-from ..identity import Named
+from ..identity import Named, key_of
 from ..report import Report
 from .gem_meshes import mend_gem_mesh
 from .instances import Group, Visible, collect
@@ -44,6 +45,7 @@ class Snapshot:
     materials: list[list[int]] = field(default_factory=list)  # kernel numbers, a list a group
     meshes: dict[int, MeshArrays | None] = field(default_factory=dict)  # by the address the mesh had
     mesh_of_group: list[int] = field(default_factory=list)
+    has_gem: list[bool] = field(default_factory=list)  # whether any of a group's materials is a gem
     lights: list[tuple[Light, str]] = field(default_factory=list)
     bodies: list[Body | None] = field(default_factory=list)  # what a group's materials fill
     world: World | None = None
@@ -125,6 +127,7 @@ class SceneBuilder:
             snapshot.bodies.append(body)
             if body is not None and body.closed and body.box is not None:
                 self.rain.stands(group.materials, body.box, group.transforms)
+            snapshot.has_gem.append(any(m is not None and m.opal.kind == "GEM" for m in group.materials))
 
         for name, sentence in visible.problems:  # grids have been read by now
             self._report.add(name, sentence, lost=True)
@@ -198,8 +201,9 @@ class SceneBuilder:
             arrays = snapshot.meshes[key] = read_mesh(group.mesh, needs)
             for sentence in arrays.problems if arrays is not None else ():
                 self._report.add(group.name, sentence, lost=True)
-            if arrays is not None and (gems := [m for m in group.materials if m is not None and m.opal.kind == "GEM"]):
-                for sentence in mend_gem_mesh(arrays, only_gems=len(gems) == len(group.materials)):
+            gems = [key_of(m) if m is not None and m.opal.kind == "GEM" else None for m in group.materials]
+            if arrays is not None and any(gem is not None for gem in gems):
+                for sentence in mend_gem_mesh(arrays, [NO_GEM if gem is None else gems.index(gem) for gem in gems]):
                     self._report.add(group.name, sentence)
         group.mesh = None
         return key

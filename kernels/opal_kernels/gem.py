@@ -82,7 +82,7 @@ def refusal(settings: Settings) -> str:
         return f"The index of refraction would fall to {n.min():.3f} at {wavelengths()[n.argmin()]:.0f} nm; it has to be 1 or more."
     if n.max() > HIGHEST_INDEX:
         return (
-            f"The index of refraction would rise to {n.max():.1f} at {wavelengths()[n.argmax()]:.0f} nm; {HIGHEST_INDEX:.0f} is the most."
+            f"The index of refraction would rise to {n.max():.4g} at {wavelengths()[n.argmax()]:.0f} nm; {HIGHEST_INDEX:.0f} is the most."
         )
     return ""
 

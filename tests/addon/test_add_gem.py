@@ -57,6 +57,28 @@ def test_stones_of_one_species_share_a_material():
     assert len(set(kinds)) == 2
 
 
+@pytest.mark.parametrize(
+    "edit",
+    [
+        lambda material: setattr(material.opal.gem, "roughness", 0.2),
+        lambda material: setattr(material.opal.gem, "fresnel", "SCHLICK"),
+        lambda material: setattr(material.opal.gem, "priority", 3),
+        lambda material: setattr(material.opal, "use_medium", True),
+        lambda material: setattr(material.opal.gem, "absorption_depth", 0.02),
+        lambda material: material.opal.gem.keyframe_insert("roughness"),
+    ],
+)
+def test_a_material_that_was_edited_is_not_shared(edit):
+    bpy.ops.opal.add_gem(species="RUBY")
+    first = bpy.context.object.data.materials[0]
+    edit(first)
+    bpy.ops.opal.add_gem(species="RUBY")
+    second = bpy.context.object.data.materials[0]
+    assert second != first and (second.opal.gem.species, second.opal.gem.roughness) == ("RUBY", 0.0)
+    bpy.ops.opal.add_gem(species="RUBY")
+    assert bpy.context.object.data.materials[0] == second and len(bpy.data.materials) == 2
+
+
 def test_it_lands_on_the_cursor():
     bpy.context.scene.cursor.location = (1.0, 2.0, 3.0)
     bpy.ops.opal.add_gem()
@@ -86,5 +108,22 @@ def test_a_broken_gemcad_file_is_refused_with_its_line(tmp_path, text, sentence)
 
 
 def test_a_missing_gemcad_file_is_refused(tmp_path):
-    with pytest.raises(RuntimeError, match=r"nowhere\.asc"):
+    with pytest.raises(RuntimeError, match=r"nowhere\.asc cannot be read: No such file"):
         bpy.ops.opal.import_gemcad(filepath=str(tmp_path / "nowhere.asc"))
+
+
+def test_a_path_may_be_relative_to_the_file(tmp_path):
+    (tmp_path / "cube.asc").write_text(ASC)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    assert bpy.ops.opal.import_gemcad(filepath="//cube.asc") == {"FINISHED"}
+
+
+def test_what_a_gemcad_file_leaves_open_is_said(tmp_path, capfd):
+    path = tmp_path / "cube.asc"
+    path.write_text(ASC.replace("I 1.54\n", "") + "a 45 0.9 12 36 n Far\n")
+    bpy.ops.opal.import_gemcad(filepath=str(path))
+    said = capfd.readouterr().out
+    assert "cube.asc gives no refractive index" in said and "2 facets lie outside the stone and cut nothing: Far" in said
+    path.write_text(ASC)
+    bpy.ops.opal.import_gemcad(filepath=str(path))
+    assert "Warning" not in capfd.readouterr().out

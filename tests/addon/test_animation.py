@@ -48,6 +48,52 @@ def test_animated_values_reach_the_picture(tmp_path):
         assert stage.render(tmp_path)[..., :3].mean() == pytest.approx(value, rel=0.05)
 
 
+def test_a_keyed_species_is_rendered_at_each_key(tmp_path):
+    """Keyframes hold single precision; both species come back by name, and the picture is each one's: red through ruby, white through water."""
+    from opal_kernels.optics import species
+
+    scene = stage.scene(8, 8, passes=1, samples=16)
+    stage.camera((0, 0, 5), type="ORTHO", ortho_scale=0.5)
+    stage.world()
+    material = bpy.data.materials.new("Stone")
+    material.opal.kind = "GEM"
+    h = 0.0025
+    corners = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-h, h)]
+    stage.mesh("Plate", corners, [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)], material=material)
+    for frame, name in ((1, "RUBY"), (5, "WATER")):
+        material.opal.gem.species = name
+        material.opal.gem.keyframe_insert("species", frame=frame)
+    shares = {}
+    for frame, name in ((1, "RUBY"), (4, "RUBY"), (5, "WATER")):
+        scene.frame_set(frame)
+        assert material.opal.gem.species == name
+        red, green, _ = stage.render(tmp_path)[..., :3].mean(axis=(0, 1))
+        assert stage.problems() == []
+        shares[name] = green / red
+    assert species.absorption("RUBY", np.array([550.0]))[0] > 100
+    assert shares["RUBY"] < 0.5 and shares["WATER"] == pytest.approx(1.0, abs=0.1), shares
+
+
+def test_a_species_that_this_version_does_not_know_is_rendered_by_its_numbers(tmp_path):
+    from opal_kernels import gem as gems
+
+    stage.scene(4, 4, passes=1, samples=1)
+    stage.camera((0, 0, 5))
+    material = bpy.data.materials.new("Kryptonite")
+    material.opal.kind = "GEM"
+    gem = material.opal.gem
+    gem.species = "RUBY"
+    gem["species"] = 12345
+    stage.plane(material=material)
+    stage.render(tmp_path)
+    assert any(line.startswith("Kryptonite: Its species is none that this version of Opal knows") for line in stage.problems())
+    assert not [line for line in stage.problems() if "KeyError" in line]
+    presets = stage.addon("presets")
+    index, absorption = stage.addon("translate.materials").gem_spectra(gem)
+    assert index == pytest.approx(gems.index(presets.settings_of(gem))) and absorption.max() > 100
+    assert presets.read_out(gem).n_d == pytest.approx(1.768, abs=1e-3) and presets.index_chart(gem) is not None
+
+
 def test_render_animation_writes_every_frame(tmp_path):
     scene = stage.scene(width=8, height=8, passes=1, samples=1)
     stage.camera()

@@ -114,6 +114,55 @@ def test_a_species_keeps_its_bands_when_its_index_is_edited(gem, tmp_path):
     assert sigma == pytest.approx(species.absorption("RUBY", np.arange(360.0, 831.0)), rel=1e-5, abs=1e-3)
 
 
+def test_a_driven_color_tints_a_stone_of_a_species(gem, tmp_path):
+    """Drivers and keyframes write without the callbacks of an edit; the picture follows them all the same."""
+    gem.species = "SAPPHIRE_COLORLESS"
+    materials, presets = stage.addon("translate.materials"), stage.addon("presets")
+    material = gem.id_data
+    for channel, value in enumerate((0.8, 0.3, 0.5)):
+        driver = gem.driver_add("absorption_color", channel).driver
+        driver.expression = str(value)
+    gem.keyframe_insert("absorption_depth")
+    action = material.animation_data.action
+    curves = action.fcurves if hasattr(action, "fcurves") else action.layers[0].strips[0].channelbags[0].fcurves
+    curves[0].keyframe_points[0].co[1] = 0.001
+    plate(material)
+    stage.render(tmp_path)
+    evaluated = material.evaluated_get(bpy.context.evaluated_depsgraph_get()).opal.gem
+    assert evaluated.species == "SAPPHIRE_COLORLESS" and presets.species_of(evaluated) == "CUSTOM"
+    settings = presets.settings_of(evaluated)
+    assert settings.absorption_color == pytest.approx((0.8, 0.3, 0.5)) and settings.absorption_depth == pytest.approx(0.001)
+    index, sigma = materials.gem_spectra(evaluated)
+    assert sigma.max() > 500 and index == pytest.approx(materials.gem_spectra(gem)[0], abs=2e-4)
+    assert presets.read_out(evaluated).n_d == pytest.approx(1.768, abs=2e-3)
+
+
+def test_a_driven_number_counts_before_the_species_own(gem):
+    """An index driven away from ruby's keeps ruby's bands; a color driven away takes their place; the same values change nothing."""
+    from opal_kernels.optics import species
+
+    materials, presets = stage.addon("translate.materials"), stage.addon("presets")
+    bands = species.absorption("RUBY", np.arange(360.0, 831.0))
+    gem.species = "RUBY"
+    gem["absorption_depth"] = gem.absorption_depth
+    assert presets.species_of(gem) == "RUBY"
+    gem["cauchy_b"] = 1.5
+    assert presets.species_of(gem) == "CUSTOM" and materials.gem_spectra(gem)[1] == pytest.approx(bands, rel=1e-5, abs=1e-3)
+    gem.species = "RUBY"
+    gem["absorption_color"] = (0.5, 0.5, 0.5)
+    _, grey = materials.gem_spectra(gem)
+    assert np.ptp(grey) < 0.05 * grey.mean()
+    gem.species = "RUBY"
+    gem["absorption_source"] = 0
+    assert presets.settings_of(gem).absorption_curve is None and presets.species_of(gem) == "CUSTOM"
+
+
+def test_an_imported_curve_with_further_columns_says_so(gem, tmp_path, capfd):
+    import_curve(tmp_path, gem.id_data, "nm;1/mm;1/mm\n400;0,5;1\n500;0,25;1\n")
+    assert "a further column is ignored" in capfd.readouterr().out
+    assert [s.absorption for s in gem.absorption_curve] == [0.5, 0.25]
+
+
 def test_the_charts_of_a_panel_follow_the_numbers(gem):
     presets = stage.addon("presets")
     gem.species = "SF11"

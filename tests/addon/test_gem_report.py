@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`opal.gem_report` on a stone of `opal.add_gem`: numbers, page and files; and what it refuses."""
 
+import importlib
 import math
 import re
 
@@ -22,11 +23,15 @@ def numbers():
     return {match[1]: float(match[2]) for match in pairs if match}
 
 
-def test_a_report_is_an_image_a_text_and_files(opal, tmp_path):
-    stone(species="DIAMOND")
+def test_a_report_is_an_image_a_text_and_files(opal, tmp_path, capfd):
+    obj = stone(species="DIAMOND")
+    obj.data.materials[0].opal.gem.roughness = 0.25
     path = tmp_path / "folder" / "diamond.png"
     assert bpy.ops.opal.gem_report(filepath=str(path), **SMALL) == {"FINISHED"}
-    assert path.stat().st_size > 5000 and "light return" in path.with_suffix(".txt").read_text()
+    text = path.with_suffix(".txt").read_text()
+    assert path.stat().st_size > 5000 and "light return" in text
+    assert "no nail-head (up to 0.5)" in text and text.endswith("the stone is judged polished\n")
+    assert f"Warning: “{obj.name}”: the roughness of “Diamond” (0.25) is ignored" in capfd.readouterr().out
     assert bpy.data.images["Gem Report"].size[0] > 2 * 128
     assert 0.6 < numbers()["light return"] < 0.9
     assert numbers()["fire (degrees)"] > 0.8
@@ -56,6 +61,29 @@ def test_a_steep_pavilion_is_a_nail_head(opal):
     stone(species="DIAMOND", pavilion_angle=math.radians(45.0))
     bpy.ops.opal.gem_report(**SMALL)
     assert numbers()["nail-head"] > 0.5 > numbers()["head shadow"]
+
+
+def left_out(obj):
+    bpy.context.view_layer.update()
+    operators = importlib.import_module(stage.addon("presets").__package__.removesuffix("addon") + "operators.gem_report")
+    return operators._stone_of(obj, bpy.context.evaluated_depsgraph_get())[1]
+
+
+def test_what_the_report_leaves_out_is_said_and_nothing_else(opal):
+    obj = stone(species="DIAMOND")
+    assert left_out(obj) == []
+    material = obj.data.materials[0]
+    obj.data.materials.append(stage.matte("Unused"))
+    assert left_out(obj) == []
+    material.opal.gem.roughness, material.opal.gem.fresnel, material.opal.use_medium = 0.25, "SCHLICK", True
+    obj.data.materials.append(stage.matte("Foil"))
+    obj.data.polygons[3].material_index = 2
+    obj.data.polygons[4].use_smooth = True
+    roughness, schlick, clouding, others, smooth = left_out(obj)
+    assert roughness.startswith("the roughness of “Diamond” (0.25) is ignored") and schlick.startswith(
+        "Schlick's approximation of “Diamond”"
+    )
+    assert clouding.startswith("the clouding of “Diamond”") and "(Foil)" in others and smooth.startswith("its smooth faces are judged")
 
 
 def test_a_mirrored_stone_is_no_stone_turned_inside_out(opal):

@@ -104,6 +104,13 @@ def test_every_setting_and_every_choice_says_in_a_sentence_what_it_does(group):
     assert not unsaid
 
 
+@pytest.mark.parametrize("group", GROUPS)
+def test_every_choice_has_a_number_that_a_keyframe_can_hold(group):
+    enums = [p for p in groups()[group].bl_rna.properties if p.type == "ENUM" and not p.is_enum_flag]
+    too_large = [f"{p.identifier}: {item.identifier}" for p in enums for item in p.enum_items if not 0 <= item.value < 2**23]
+    assert not too_large
+
+
 def test_these_are_opals_operators():
     assert sorted(dir(bpy.ops.opal)) == sorted(OPERATORS)
 
@@ -356,10 +363,34 @@ def test_an_impossible_index_is_refused_with_a_sentence_and_the_last_good_one_ke
     assert gem.refusal == "" and gem.species == "CUSTOM"
 
 
+@pytest.mark.parametrize(
+    "name, value, sentence",
+    [
+        ("cauchy_b", 0.5, "has to be 1 or more"),
+        ("cauchy_b", math.nan, "has no value"),
+        ("cauchy_b", math.inf, "10 is the most"),
+        ("cauchy_c", 1e9, "10 is the most"),
+    ],
+)
+def test_numbers_of_the_formula_that_is_not_shown_are_refused_as_well(name, value, sentence, gem):
+    """Else the other formula could not be chosen afterwards, and its panel hides the number that is in the way."""
+    gem.species = "RUBY"
+    before = gem.cauchy_b, gem.cauchy_c
+    setattr(gem, name, value)
+    assert sentence in gem.refusal and (gem.cauchy_b, gem.cauchy_c) == before and gem.species == "RUBY"
+    gem.dispersion = "CAUCHY"
+    assert (gem.refusal, gem.dispersion, gem.species) == ("", "CAUCHY", "CUSTOM")
+    setattr(gem, name, value)
+    assert sentence in gem.refusal and (gem.cauchy_b, gem.cauchy_c) == before
+
+
 def test_species_are_saved_by_name_not_by_their_place_in_the_table(gem):
+    """And by numbers that a keyframe, of single precision and rounded, can hold, each distinct from those of files of layout 1."""
     presets = stage.addon("presets")
     numbers = [item[3] for item in presets.species_items()]
-    assert len(set(numbers)) == len(numbers)
+    assert len(set(numbers)) == len(numbers) and min(numbers) == 0 and max(numbers) < 2**23
+    old = [item[3] for item in presets._items_of_31_bits]
+    assert len({*numbers, *old}) == 2 * len(numbers) - 1, "Custom alone is 0 in both"
     gem.species = "EMERALD"
     assert gem.get("species", presets.species_number("EMERALD")) == presets.species_number("EMERALD")
 

@@ -39,6 +39,34 @@ def test_a_file_from_before_twins_gets_them(tmp_path):
     assert bpy.context.scene["opal_layout"] == versions.current()
 
 
+def test_species_of_layout_1_keep_their_names(tmp_path):
+    """They were numbers of 31 bits, which keyframes cannot hold; one that nobody chose, and Custom, stay as they are."""
+    import zlib
+
+    scene = stage.scene()
+    names = ("RUBY", "WATER", "DIAMOND", "CUSTOM")
+    for name in (*names, "untouched"):
+        stone = bpy.data.materials.new(name)
+        stone.use_fake_user = True
+        stone.opal.kind = "GEM"
+        if name != "untouched":
+            stone.opal.gem.species = name
+            stone.opal.gem["species"] = 0 if name == "CUSTOM" else zlib.crc32(name.encode()) & 0x7FFFFFFF
+    assert bpy.data.materials["RUBY"].opal.gem.species == ""
+    scene["opal_layout"] = 1
+    versions = stage.addon("versions")
+    bpy.app.handlers.save_pre.remove(versions._on_save)
+    try:
+        saved_and_opened(tmp_path / "layout1.blend")
+    finally:
+        if versions._on_save not in bpy.app.handlers.save_pre:
+            bpy.app.handlers.save_pre.append(versions._on_save)
+    assert {m.name: m.opal.gem.species for m in bpy.data.materials if m.opal.kind == "GEM"} == {
+        **{name: name for name in names},
+        "untouched": "DIAMOND",
+    }
+
+
 def test_every_step_runs_once_and_in_order(tmp_path, monkeypatch):
     versions = stage.addon("versions")
     ran = []

@@ -17,11 +17,19 @@ def settings(curve=None, **fields):
         "wavelength nm, absorption 1/mm\n600,0\n400,0.5\n500,0.25",
         "# measured on a plate\n\n400; 0.5\n500 ; 0.25 # peak\n600;0\n",
         "\ufeffnm\tper mm\r\n400\t5e-1\r\n500\t.25\r\n600\t0\r\n",
+        "400 0.5\n500, 0.25\n600 ,0\n",
+        "Wellenlänge;Absorption\nnm;1/mm\n400;0,5\n500,0;0,25\n600;0\n",
+        "wavelength\tabsorption\n400\t0,5\n500\t0,25\n6,00e2\t0\n",
     ],
 )
 def test_a_curve_is_read_whatever_parts_its_columns(text):
-    nm, value = curves.parse(text)
-    assert nm.tolist() == [400, 500, 600] and value.tolist() == [0.5, 0.25, 0]
+    nm, value, ignored = curves.parse(text)
+    assert nm.tolist() == [400, 500, 600] and value.tolist() == [0.5, 0.25, 0] and ignored == 0
+
+
+def test_further_columns_are_counted():
+    assert curves.parse("400,0.5\n500,0.25,1,2\n").ignored_columns == 2
+    assert curves.parse("400;0,5;0,01\n").ignored_columns == 1
 
 
 @pytest.mark.parametrize(
@@ -36,6 +44,11 @@ def test_a_curve_is_read_whatever_parts_its_columns(text):
         ("400,0.5\n-500,0.1\n", "Line 2: a wavelength has to be above 0"),
         ("400,0.5\n\n400,0.6\n", "Line 3: the wavelength 400 nm stands there a second time"),
         ("0.4,0.5\n0.7,0.2\n", "have to be in nm"),
+        ("400 0.5\n400,5 0,3\n", "Line 2: a comma may part columns or stand for a decimal point here"),
+        ("nm 1/mm\n400 0,3\n", "Line 2: a comma may part columns"),
+        ("400,0.3;0.5\n500;0\n", "Line 1: “400.0.3” is not a number"),
+        ("400;0,5\n500,1;0.3,5\n", "Line 2: “0.3.5” is not a number"),
+        ("one\ntwo\nthree\n400,0.5\n", "Line 3"),
     ],
 )
 def test_a_bad_curve_is_refused_with_its_line(text, sentence):

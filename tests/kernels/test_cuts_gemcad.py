@@ -94,3 +94,26 @@ def test_facets_that_leave_the_stone_open_are_refused():
 def test_bytes_of_old_files_are_windows_1252():
     assert gemcad.decode("H 43°".encode("cp1252")) == "H 43°"
     assert gemcad.decode("\ufeffGemCad".encode()) == "GemCad"
+
+
+@pytest.mark.parametrize(
+    "tier",
+    [
+        "a 90 0.5 96 24 48 72 n\ngirdle G",
+        "a 90 0.5 96 24 n\nF1\n48 72",
+        "a 90 0.5 96 24\n48 n Hips 72 G cut to\nFinish with the gear\nand a level girdle\nIgnore this",
+        "a90 0.5 96 24 48 72",
+    ],
+)
+def test_names_and_notes_go_on_over_lines_whatever_letter_they_begin_with(tier):
+    design = gemcad.parse(f"GemCad 5.0\ng96 0\ny8 y\nI1.54\nH Test\n{tier}\na 0 0.5 n T\na -0.0 0.5 n C\nF end\n")
+    assert (design.gear, design.symmetry, design.refractive_index) == (96, 8, 1.54)
+    assert design.headers == ["Test"] and design.footnotes == ["end"]
+    assert design.tiers[0].indices == (96, 24, 48, 72) and len(design.tiers) == 3
+    assert design.cut().solid.volume() == pytest.approx(1.0, rel=1e-12)
+
+
+def test_facets_outside_the_stone_are_known_and_doubled_ones_are_not_among_them():
+    design = gemcad.parse(HEADER + CUBE + "a 45 0.9 12 36 n Far\na 90 0.5 0 n Twice\na 45 0.7 96 n Cuts\n")
+    assert design.outside(design.cut()) == ["Far", "Far"]
+    assert gemcad.parse(HEADER + CUBE).outside(gemcad.parse(HEADER + CUBE).cut()) == []

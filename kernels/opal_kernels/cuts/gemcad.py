@@ -11,7 +11,7 @@ GemCad (Robert W. Strickland) is how faceters share designs. One record a line, 
     a -43.1 0.65 96 n P1 12 24 G …  a tier: angle from the girdle plane in degrees (negative: pavilion; 0: table), distance of the plane from
                                     the origin, then indices, a name after each `n`, and cutting notes after `G`
 
-Index lists may go on over the next lines. A culet is an angle of 0 that is negative, or 0 with a negative distance. Index i stands for the
+Index lists, names and notes may go on over the next lines; a record may stand without the blank after its letter (``g96``). A culet is an angle of 0 that is negative, or 0 with a negative distance. Index i stands for the
 azimuth 360°·(i − offset)/gear. Sources: GemCad User's Manual 4.51 (rockhounds.com/oplc/cd_online/gemcad_docs/refman.htm), gemcad.com, and
 the survey of 5,759 such files in the documentation of the ``indicatrix`` project. The index lists are complete, so symmetry is only reported.
 """
@@ -19,6 +19,7 @@ the survey of 5,759 such files in the documentation of the ``indicatrix`` projec
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -83,6 +84,28 @@ class Design:
         GemCadError
             If its planes do not close a stone.
         """
+        facets = self._facets()
+        try:
+            stone = facets.cut()
+        except ValueError as error:
+            raise GemCadError(f"the facets do not make a stone: {error}") from error
+        solid = stone.solid.contracted(meet_length * float(stone.extent()[:2].min()))
+        return Stone(solid, tuple(facets.names[plane] for plane in solid.planes))
+
+    def outside(self, stone: Stone, meet_length: float = MEET_LENGTH) -> list[str]:
+        """Names of the facets whose planes lie outside a stone that `cut` made, so that they cut nothing.
+
+        Parameters
+        ----------
+        meet_length : float
+            Planes nearer than this fraction of the stone's width touch it: they are another facet's, or meet a corner.
+        """
+        facets = self._facets()
+        reach = (np.array(facets.normals) @ stone.solid.vertices.T).max(axis=1)
+        gap = meet_length * float(stone.extent()[:2].min())
+        return [name for name, distance, far in zip(facets.names, facets.distances, reach, strict=True) if distance - far > gap]
+
+    def _facets(self) -> FacetPlanes:
         facets = FacetPlanes()
         for tier in self.tiers:
             down = math.copysign(1.0, tier.angle) < 0.0
@@ -101,12 +124,7 @@ class Design:
                     )
                 )
                 facets.through(name, normal, tier.distance * normal)
-        try:
-            stone = facets.cut()
-        except ValueError as error:
-            raise GemCadError(f"the facets do not make a stone: {error}") from error
-        solid = stone.solid.contracted(meet_length * float(stone.extent()[:2].min()))
-        return Stone(solid, tuple(facets.names[plane] for plane in solid.planes))
+        return facets
 
 
 def parse(text: str) -> Design:
@@ -131,10 +149,11 @@ def parse(text: str) -> Design:
         stripped = line.strip()
         if not stripped or stripped.startswith(";"):
             continue
-        if stripped[0] in "gyIHFa" and not stripped.startswith(("GemCad",)):
+        tier = records[-1][1] if records and records[-1][1][0] == "a" else ""
+        if tier and _continues(tier, stripped):
+            records[-1] = (records[-1][0], f"{tier} {stripped}")
+        elif stripped[0] in _RECORDS:
             records.append((number, stripped))
-        elif records and records[-1][1][0] == "a":
-            records[-1] = (records[-1][0], f"{records[-1][1]} {stripped}")
         else:
             raise GemCadError(f"line {number}: expected a record (g, y, I, H, F or a), found {stripped[:20]!r}")
     for number, record in records:
@@ -144,6 +163,18 @@ def parse(text: str) -> Design:
     if not design.tiers:
         raise GemCadError("the file has no facets (lines a)")
     return design
+
+
+def _continues(tier: str, line: str) -> bool:
+    """Whether a line goes on with the tier above it."""
+    words = iter(tier[1:].split()[2:])
+    for word in words:
+        if word == "n" and next(words, None) is None:
+            return True  # the name is still to come, whatever letter it begins with
+        if word.startswith("G"):  # notes, which may begin with any word
+            return not _RECORD.match(line)
+    first = line.split()[0]
+    return first[0] not in _RECORDS or first == "n"
 
 
 def decode(data: bytes) -> str:
@@ -225,6 +256,9 @@ def _tier(design: Design, line: int, rest: str) -> None:
     if sum(max(1, len(tier.indices)) for tier in design.tiers) > MAX_FACETS:
         raise GemCadError(f"line {line}: more than {MAX_FACETS} facets")
 
+
+# A record as it has to begin to be told from a note: its letter alone, or before a number where it takes one.
+_RECORD = re.compile(r"[HF](\s|$)|[gyIa]\s*[-+.\d]")
 
 _RECORDS = {
     "g": _gear,

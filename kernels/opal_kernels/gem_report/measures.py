@@ -26,7 +26,7 @@ HEAD_ANGLE = math.radians(15.0)
 """Half of the cone that the observer's head takes, radians."""
 
 # A fish-eye is seen when the girdle's image covers this share of the table; a nail-head when the head darkens this much of its middle.
-_FISH_EYE, _NAIL_HEAD = 0.01, 0.5
+FISH_EYE, NAIL_HEAD = 0.01, 0.5
 # Facets inside by which the girdle's image under the table is looked for; beyond, it is broken up.
 _FISH_EYE_FACETS = 3
 # Wavelengths (nm) and weights by which a coloured stone's shares are averaged: Gauss and Hermite's rule of three for the luminance of
@@ -96,11 +96,11 @@ class Report:
 
     @property
     def has_fish_eye(self) -> bool:
-        return self.fish_eye > _FISH_EYE
+        return self.fish_eye > FISH_EYE
 
     @property
     def has_nail_head(self) -> bool:
-        return self.nail_head > _NAIL_HEAD
+        return self.nail_head > NAIL_HEAD
 
 
 def _eye_rays(towards: np.ndarray, side: int) -> tuple[np.ndarray, np.ndarray]:

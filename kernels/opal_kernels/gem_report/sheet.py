@@ -3,13 +3,18 @@
 
 from __future__ import annotations
 
+import textwrap
+from collections.abc import Sequence
+
 import numpy as np
 
-from ..charts.canvas import Axes, Canvas
-from .measures import Report
+from ..charts.canvas import Axes, Canvas, text_width
+from .measures import FISH_EYE, NAIL_HEAD, Report
 
 _WHITE, _RED, _BLUE, _GREY = (0.8, 0.8, 0.8), (0.9, 0.15, 0.1), (0.15, 0.35, 0.95), (0.35, 0.35, 0.35)
 _MARGIN = 24
+# Pixels from one line of a note to the next.
+_LINE = 14
 
 
 def rows(report: Report) -> list[tuple[str, float]]:
@@ -27,23 +32,33 @@ def rows(report: Report) -> list[tuple[str, float]]:
     ]
 
 
-def table(report: Report, title: str = "Gem report") -> str:
-    """The report as text: a line a number, then a line a tilt."""
+def verdicts(report: Report) -> list[tuple[str, bool]]:
+    """The faults of a pavilion, each with the share from which it is called so, and whether this stone has it."""
+    faults = (("fish-eye", FISH_EYE, report.has_fish_eye), ("nail-head", NAIL_HEAD, report.has_nail_head))
+    return [(f"{name} (over {least:g})" if seen else f"no {name} (up to {least:g})", seen) for name, least, seen in faults]
+
+
+def table(report: Report, title: str = "Gem report", notes: Sequence[str] = ()) -> str:
+    """The report as text: a line a number, a line a tilt, then what the numbers leave out."""
     lines = [title, ""]
     lines += [f"{name:<16}{value:8.4f}" for name, value in rows(report)]
+    lines += ["", *(text for text, _ in verdicts(report))]
     lines += ["", f"{'tilt (degrees)':<16}{'return':>8}{'head':>8}{'leakage':>9}{'absorbed':>10}"]
     for tilt, shares in zip(report.tilts, report.tilt_curve, strict=True):
         lines.append(f"{tilt:<16.1f}{shares.light_return:8.4f}{shares.head:8.4f}{shares.leakage:9.4f}{shares.absorbed:10.4f}")
+    lines += ["", *notes] if notes else []
     return "\n".join(lines) + "\n"
 
 
-def draw(report: Report, picture: np.ndarray, fire: np.ndarray, title: str = "Gem report") -> np.ndarray:
+def draw(report: Report, picture: np.ndarray, fire: np.ndarray, title: str = "Gem report", notes: Sequence[str] = ()) -> np.ndarray:
     """The page.
 
     Parameters
     ----------
     picture, fire : ndarray
         (size, size, 4), of `pictures.face_up` and `pictures.flashes`, at least 128 pixels across.
+    notes : sequence of str
+        Sentences on what the numbers leave out, below them.
 
     Returns
     -------
@@ -54,7 +69,8 @@ def draw(report: Report, picture: np.ndarray, fire: np.ndarray, title: str = "Ge
     plot = max(size, 256)
     width = 2 * size + plot + 4 * _MARGIN + 40
     lines = rows(report)
-    height = size + 3 * _MARGIN + 40 + 20 * ((len(lines) + 1) // 2)
+    small = [line for note in notes for line in textwrap.wrap(note, (width - 2 * _MARGIN) // text_width(" ", 1))]
+    height = size + 3 * _MARGIN + 40 + 20 * ((len(lines) + 1) // 2) + _LINE * len(small)
     canvas = Canvas(width, height)
     canvas.text(_MARGIN, 12, title, scale=2)
     top = _MARGIN + 20
@@ -78,12 +94,14 @@ def draw(report: Report, picture: np.ndarray, fire: np.ndarray, title: str = "Ge
     axes.legend([(name, colour) for name, colour, _ in curves])
     canvas.text(x + (plot - 30) // 2, top + size + 20, "tilt, degrees", scale=1, align="middle")
     below = top + size + 36
+    scale = 2 if size >= text_width("light return: 0.000") else 1
     for number, (name, value) in enumerate(lines):
-        canvas.text(_MARGIN + (number % 2) * (size + _MARGIN), below + 20 * (number // 2), f"{name}: {value:.3f}", scale=2)
-    verdicts = [text for seen, text in ((report.has_fish_eye, "fish-eye"), (report.has_nail_head, "nail-head")) if seen]
-    canvas.text(x, below, " and ".join(verdicts) or "no fish-eye,", _RED if verdicts else _WHITE, scale=2)
-    if not verdicts:
-        canvas.text(x, below + 20, "no nail-head", _WHITE, scale=2)
+        canvas.text(_MARGIN + (number % 2) * (size + _MARGIN), below + 20 * (number // 2), f"{name}: {value:.3f}", scale=scale)
+    for number, (text, seen) in enumerate(verdicts(report)):
+        canvas.text(x, below + 20 * number, text, _RED if seen else _WHITE, scale=2)
+    below += 20 * ((len(lines) + 1) // 2)
+    for number, line in enumerate(small):
+        canvas.text(_MARGIN, below + _LINE * number, line, scale=1)
     return canvas.pixels
 
 

@@ -29,6 +29,7 @@ class Species:
     density: float
     source: str
     absorption_source: str
+    note: str
 
 
 @lru_cache(maxsize=1)
@@ -47,6 +48,7 @@ def table() -> dict[str, Species]:
             density=row["density"],
             source=row["source"],
             absorption_source=row.get("absorption_source", ""),
+            note=row.get("note", ""),
         )
         for name, row in rows.items()
     }
