@@ -129,28 +129,43 @@ def test_saving_and_loading_keeps_every_setting(tmp_path):
             elif prop.type == "INT":
                 setattr(group, prop.identifier, value + 1)
             elif prop.type == "ENUM":
-                setattr(group, prop.identifier, prop.enum_items[-1].identifier if prop.enum_items else value)
+                others = [item.identifier for item in prop.enum_items if item.identifier != value]
+                setattr(group, prop.identifier, others[-1] if others else value)
             elif prop.type == "STRING":
                 setattr(group, prop.identifier, value + "x")
-            elif prop.type == "FLOAT" and not prop.is_array:
-                setattr(group, prop.identifier, value * 0.9 + 0.01)
+            elif prop.type == "FLOAT":
+                setattr(group, prop.identifier, [x * 0.9 + 0.01 for x in value] if prop.is_array else value * 0.9 + 0.01)
 
     scene = stage.scene()
     material = bpy.data.materials.new("Stone")
     material.use_fake_user = True
     material.opal.gem.species = "RUBY"
-    change(scene.opal)
-    change(bpy.context.view_layer.opal)
-    change(material.opal)
+    for made in (bpy.data.lights.new("Lamp", "POINT"), bpy.data.cameras.new("Eye"), bpy.data.worlds.new("Sky")):
+        made.use_fake_user = True
+
+    def owners():
+        data = bpy.data
+        return (
+            bpy.context.scene,
+            bpy.context.view_layer,
+            data.materials["Stone"],
+            data.lights["Lamp"],
+            data.cameras["Eye"],
+            data.worlds["Sky"],
+        )
+
+    untouched = [settings_of(owner.opal) for owner in owners()]
+    for owner in owners():
+        change(owner.opal)
     scene.opal.wavelengths = (400, 700)
-    groups = (scene.opal, bpy.context.view_layer.opal, material.opal)
-    before = [settings_of(group) for group in groups]
+    before = [settings_of(owner.opal) for owner in owners()]
+    assert all(a != b for a, b in zip(untouched, before, strict=True))
     path = str(tmp_path / "settings.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path)
     bpy.ops.wm.read_homefile(use_empty=True)
     bpy.ops.wm.open_mainfile(filepath=path)
     scene = bpy.context.scene
-    after = [settings_of(g) for g in (scene.opal, bpy.context.view_layer.opal, bpy.data.materials["Stone"].opal)]
+    after = [settings_of(owner.opal) for owner in owners()]
     assert scene.render.engine == "OPAL"
     assert after == before
     assert np.isclose(after[0]["wavelengths"], (400, 700)).all()

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every lamp and world beside Cycles: the same watts on a grey floor give the same picture.
 
-Each case renders a floor with a tilted board on it, in both engines. Means agree within 0.3 % a channel, or within four
-standard errors where Cycles' own noise (measured from two seeds) is larger.
+Each case renders a floor with a tilted board on it, in both engines. Means agree within 0.3 % a channel, of which four standard errors of
+Cycles' own (measured from two seeds) are the smaller part: where they are not, both take more samples.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy")
 
-SIZE, SAMPLES = (32, 24), 256
+SIZE, SAMPLES, MOST_SAMPLES = (32, 24), 256, 65536
 
 
 def grey(name="grey", value=0.5):
@@ -95,22 +95,29 @@ def stage():
     board("board", 1.0, (-0.7, 0.4, 0.5), (0.9, 0.3, 0.2), material)
 
 
-def measured(render, engine, seed):
+def measured(render, engine, seed, samples=SAMPLES):
     scene = bpy.context.scene
     scene.cycles.max_bounces = 8
-    return np.asarray(render(scene, engine, SIZE, SAMPLES, seed), dtype=np.float64)[..., :3]
+    return np.asarray(render(scene, engine, SIZE, samples, seed), dtype=np.float64)[..., :3]
 
 
 def check(render, tolerance=3e-3):
-    theirs, again, ours = (measured(render, e, s) for e, s in (("CYCLES", 1), ("CYCLES", 2), ("OPAL", 3)))
-    noise = np.std(theirs - again) / math.sqrt(2 * theirs[..., 0].size)  # of the mean of one render
-    mean, allowed = 0.5 * (theirs + again).mean(axis=(0, 1)), 4 * noise
-    found = ours.mean(axis=(0, 1))
+    samples = SAMPLES
+    while True:
+        theirs, again = (measured(render, "CYCLES", seed, samples) for seed in (1, 2))
+        mean = 0.5 * (theirs + again).mean(axis=(0, 1))
+        noise = np.std(theirs - again, axis=(0, 1)) / math.sqrt(2 * theirs[..., 0].size)  # of the mean of one render, by channel
+        if (4 * noise < tolerance * mean).all() or samples >= MOST_SAMPLES:
+            break
+        samples *= 4
     assert mean.max() > 1e-3, "the scene is dark"
-    assert found == pytest.approx(mean, rel=tolerance, abs=allowed), f"Opal / Cycles = {found / mean}"
+    assert (4 * noise < tolerance * mean).all(), f"too noisy to tell: {noise / mean} after {samples} samples"
+    ours = measured(render, "OPAL", 3, samples)
+    found = ours.mean(axis=(0, 1))
+    assert found == pytest.approx(mean, rel=tolerance), f"Opal / Cycles = {found / mean}"
     # Nothing is in another place: blocks of 8 x 8 pixels agree as well.
     blocks = [x.reshape(3, 8, 4, 8, 3).mean(axis=(1, 3)) for x in (ours, 0.5 * (theirs + again))]
-    assert blocks[0] == pytest.approx(blocks[1], rel=0.02, abs=0.01 * mean.max() + 8 * allowed)
+    assert blocks[0] == pytest.approx(blocks[1], rel=0.02, abs=0.01 * mean.max() + 32 * noise.max())
 
 
 LAMPS = {
@@ -282,7 +289,7 @@ def test_many_lamps(opal, render):
             energy=10 ** rng.uniform(0, 1.3),
             color=rng.uniform(0.2, 1, 3),
         )
-    check(render, 5e-3)
+    check(render)
 
 
 def test_uniform_world(opal, render):
@@ -317,7 +324,7 @@ def test_world_of_a_picture(opal, render):
     texture = tree.nodes.new("ShaderNodeTexEnvironment")
     texture.image = image
     tree.links.new(texture.outputs["Color"], background.inputs["Color"])
-    check(render, 5e-3)
+    check(render)
 
 
 @pytest.mark.parametrize("size", [0.5, 3.0])
@@ -335,7 +342,7 @@ def test_emissive_mesh(opal, render, size):
         next(n for n in tree.nodes if n.type == "OUTPUT_MATERIAL").inputs["Surface"],
     )
     board("glow", size, (0.5, 0.5, 1.2), (0.4, 0.2, 0), material)
-    check(render, 5e-3)
+    check(render)
 
 
 def test_lamp_with_nodes(opal, render):
