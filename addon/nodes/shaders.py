@@ -134,6 +134,7 @@ def principled(n: NodeView, weight: Value) -> None:
         n.problem("Light does not travel under the surface; subsurface is shaded as diffuse of the base colour.")
     if number("Thin Wall").number != 0:
         n.problem("Thin walls are not shaded; the surface bounds a solid.")
+    _no_thin_film(n)
     anisotropic = number("Anisotropic")
     n.emit(
         Op.PRINCIPLED,

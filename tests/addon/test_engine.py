@@ -160,3 +160,19 @@ def test_what_cannot_be_read_is_named_in_the_report(tmp_path):
     stage.plane("Card", size=20, material=stage.node_material("Toon one", "BsdfToon"))
     stage.render(tmp_path)
     assert any("Toon one" in entry for entry in stage.problems()), stage.problems()
+
+
+@pytest.mark.parametrize("kind", ["BsdfPrincipled", "BsdfGlass", "BsdfMetallic"])
+def test_a_thin_film_that_is_not_shaded_is_named(kind, tmp_path):
+    stage.scene()
+    stage.camera((0, 0, 5))
+    material = stage.node_material("Soap", kind)
+    stage.plane(size=20, material=material)
+    stage.render(tmp_path)
+    assert not stage.problems()
+    shader = next(node for node in material.node_tree.nodes if node.outputs[0].type == "SHADER")
+    if "Thin Film Thickness" not in shader.inputs:
+        pytest.skip(f"this Blender's {shader.bl_label} has no thin film")
+    shader.inputs["Thin Film Thickness"].default_value = 400.0
+    stage.render(tmp_path)
+    assert any("Soap" in entry and "Thin films" in entry for entry in stage.problems()), stage.problems()
