@@ -54,7 +54,6 @@ def render(engine: Any, depsgraph: Any) -> None:
         if (capture := captures.current()) is not None:
             capture.failure = sentence
         engine.report({"ERROR"}, sentence)
-        engine.error_set(sentence)
         return
     if not engine.is_preview and (summary := found.summary()):
         engine.report({"WARNING"}, summary)
@@ -315,10 +314,10 @@ class _FinalRender:
     def _write_spectrum(self, render: Render) -> None:
         if not self.settings.spectral_bins:
             return
-        path = spectral_exr.output_path(self.scene, self.layer.name)
         first, last = self.settings.wavelength_first, self.settings.wavelength_last
         centers = spectral_exr.bin_centers(first, last, self.settings.spectral_bins)
         try:
+            path = spectral_exr.output_path(self.scene, self.layer.name)
             spectral_exr.write(path, render.film(Pass.SPECTRAL), render.film(Pass.COMBINED), centers)
         except OpalError as error:
             self.report.add("", str(error))

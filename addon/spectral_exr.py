@@ -30,8 +30,16 @@ def channel_name(wavelength: float) -> str:
 
 
 def output_path(scene: Any, layer: str) -> Path:
-    """Where a frame's spectral file goes: # are digits of the frame; a layer's name is added where there are several."""
+    """Where a frame's spectral file goes: # are digits of the frame; a layer's name is added where there are several.
+
+    Raises
+    ------
+    OpalError
+        If the scene's setting names no file.
+    """
     path = bpy.path.abspath(scene.opal.spectral_path)
+    if not path or path.endswith(("/", "\\")):
+        raise OpalError("The spectral file cannot be written: Spectral EXR › File names no file.")
     path = re.sub(r"#+", lambda run: f"{scene.frame_current:0{len(run.group())}d}", path)
     if not path.lower().endswith(".exr"):
         path += ".exr"
