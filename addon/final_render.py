@@ -108,7 +108,11 @@ class _FinalRender:
 
     def _refuse_what_does_not_fit(self) -> None:
         width, height = self.frame.region_size
-        needed = memory.film_bytes(width * height, self.settings.passes, self.settings.spectral_bins)
+        bins = self.settings.spectral_bins
+        needed = memory.film_bytes(width * height, self.settings.passes, bins)
+        needed += memory.copies_bytes(width * height, bins, self.denoise)
+        whole = width * height if self.scene.render.use_crop_to_border else self.frame.width * self.frame.height
+        needed += memory.result_bytes(whole, [row.source for row in self.passes])
         available = memory.available_bytes()
         if available is not None and needed > _MEMORY_SHARE * available:
             raise OpalError(
