@@ -17,6 +17,9 @@ import bpy
 import numpy as np
 from opal_kernels.binding import OpalError
 
+# Blender's watts are not bound to a spectrum, so neither is the scale: only ratios between wavelengths and pixels are physical.
+UNITS = "relative spectral radiance: 1 at every wavelength has luminance 1 in R, G, B"
+
 
 def bin_centers(first: float, last: float, bins: int) -> np.ndarray:
     """Middle of each bin in nm, shape (bins,)."""
@@ -94,7 +97,7 @@ def write(path: Path, spectra: np.ndarray, rgb: np.ndarray, wavelengths: Sequenc
     spec = oiio.ImageSpec(width, height, 3 + bins, "float")
     spec.channelnames = ("R", "G", "B", *map(channel_name, wavelengths))
     spec.attribute("spectralLayoutVersion", "1.0")
-    spec.attribute("emissiveUnits", "W.m^-2.sr^-1.nm^-1")
+    spec.attribute("emissiveUnits", UNITS)
     spec.attribute("compression", "zip")
     pixels = np.ascontiguousarray(np.concatenate((rgb[..., :3], spectra), axis=2)[::-1], np.float32)
     try:

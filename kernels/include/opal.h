@@ -416,7 +416,7 @@ enum {
   OPAL_PASS_INDIRECT = 7,  /* 3: more than one, caustics excluded */
   OPAL_PASS_CAUSTICS = 8,  /* 3: brought to a diffuse surface by a specular one */
   OPAL_PASS_MEDIUM = 9,    /* 3 */
-  OPAL_PASS_SPECTRAL = 10, /* spectral_bins: radiance per nm, W/(m2 sr nm) with D65-white of luminance 1 as unit */
+  OPAL_PASS_SPECTRAL = 10, /* spectral_bins: radiance per nm, relative: 1 throughout has luminance 1 */
   OPAL_PASS_NOISE = 11,    /* 1: estimated standard error of the luminance */
   /* Layers for compositing over a picture that another engine made (src/integrator/layers.h); they add up to Combined,
    * Behind apart. 4 each: premultiplied, alpha is the share of camera rays whose first event fell there. */

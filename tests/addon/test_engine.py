@@ -2,6 +2,7 @@
 """The engine as a good citizen: it is registered, renders, ends when told, writes what it promises."""
 
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -121,6 +122,11 @@ def test_a_spectral_file_holds_the_light_of_a_white_world(tmp_path):
     visible = (wavelengths[order] > 420) & (wavelengths[order] < 680)
     np.testing.assert_allclose(measured[order][visible], white[order][visible], rtol=0.1)
     assert picture[..., :3].mean() == pytest.approx(1.0, rel=0.03)
+    # What the file says of its unit: weighed by the eye's sensitivity its mean is the luminance of the picture.
+    eye = np.interp(wavelengths, colour.WAVELENGTHS_NM, colour.observer()[1])
+    luminance = (picture[..., :3] @ (0.2126729, 0.7151522, 0.0721750)).mean()
+    assert (measured * eye).sum() / eye.sum() == pytest.approx(luminance, rel=0.01)
+    assert image.spec().getattribute("emissiveUnits").startswith("relative")
 
 
 def test_denoising_lowers_noise_and_keeps_the_mean(tmp_path):
@@ -142,6 +148,47 @@ def test_denoising_lowers_noise_and_keeps_the_mean(tmp_path):
     # What differs between seeds is noise; what they share is the picture.
     assert np.std(clean[0] - clean[1]) < 0.5 * np.std(noisy[0] - noisy[1])
     assert np.mean(clean) == pytest.approx(np.mean(noisy), rel=0.02)
+
+
+class DrawnLayout:
+    """Takes what a panel draws: the properties and the texts."""
+
+    active = enabled = True
+
+    def __init__(self):
+        self.properties, self.texts = [], []
+
+    def prop(self, _owner, name, **_):
+        self.properties.append(name)
+
+    def label(self, text="", **_):
+        self.texts.append(text)
+
+
+def test_without_a_denoiser_its_setting_is_greyed_out_and_says_why(monkeypatch, tmp_path):
+    from opal_kernels import denoise
+
+    panel = stage.addon("panels").OPAL_RENDER_PT_denoise
+
+    def drawn():
+        header, body = DrawnLayout(), DrawnLayout()
+        panel.draw_header(SimpleNamespace(layout=header), bpy.context)
+        panel.draw_settings(SimpleNamespace(layout=body), body, bpy.context.scene.opal, bpy.context)
+        assert header.properties == ["denoise"]
+        return header.enabled, body.texts
+
+    reason = "This build of Blender carries no Open Image Denoise."
+    monkeypatch.setattr(denoise, "unavailable", lambda: reason)
+    assert drawn() == (False, [reason])
+    # A file whose setting was made where there is a denoiser renders, and the report says what is missing.
+    stage.scene().opal.denoise = True
+    stage.camera()
+    stage.world()
+    assert stage.render(tmp_path)[..., :3].mean() > 0.5
+    assert any(reason in entry for entry in stage.problems()), stage.problems()
+    monkeypatch.setattr(denoise, "unavailable", lambda: "")
+    enabled, texts = drawn()
+    assert enabled and reason not in texts
 
 
 def test_material_previews_are_rendered_fast(tmp_path):
