@@ -43,7 +43,6 @@ class OpalRenderEngine(bpy.types.RenderEngine):
             from .final_render import render
         except Exception as error:  # Blender 4.5 crashes when it writes the picture of an engine that raised
             self.report({"ERROR"}, f"Opal's kernels do not load: {error}")
-            self.error_set(f"Opal's kernels do not load: {error}")
             return
         render(self, depsgraph)
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A final render: translate, render pass after pass while the person may stop, show, finish.
 
-A pass runs in a thread of its own, because Blender only asks whether to stop on the thread that it gave to the engine.
+What takes long and can be stopped in the midst (building the scene, a pass, denoising) runs in a thread of its own (`stopping`).
 """
 
 from __future__ import annotations
@@ -17,21 +17,20 @@ from typing import Any
 import bpy
 import numpy as np
 from opal_kernels import denoise, memory
-from opal_kernels.binding import Cancelled, OpalError
+from opal_kernels.binding import OpalError
 from opal_kernels.descriptions import Carry, Pass, RenderSettings
 from opal_kernels.render import Render
 from opal_kernels.scene import Scene
 
 from . import capture as captures
-from . import film_files, main_thread, report, settings, spectral_exr
+from . import film_files, main_thread, report, settings, spectral_exr, stopping
 from .identity import Named
 from .render_passes import RenderPass, wanted
+from .stopping import Stopped
 from .translate import clipping
 from .translate.camera import camera_from_object
-from .translate.scene_builder import SceneBuilder, Stopped
+from .translate.scene_builder import SceneBuilder
 
-# How long the engine's thread sleeps between looking whether the person wants to stop.
-_POLL_SECONDS = 0.03
 # Blender is shown the picture at most this often, and at once after the first pass.
 _SHOW_SECONDS = 1.0
 # Part of the free memory that a film may take.
@@ -58,7 +57,6 @@ def render(engine: Any, depsgraph: Any) -> None:
         if (capture := captures.current()) is not None:
             capture.failure = sentence
         engine.report({"ERROR"}, sentence)
-        engine.error_set(sentence)
         return
     if not engine.is_preview and (summary := found.summary()):
         engine.report({"WARNING"}, summary)
@@ -99,10 +97,9 @@ class _FinalRender:
         with self._translate() as scene, Render(scene, self.settings) as render:
             width, height = self.frame.region_size
             result = self.engine.begin_result(0, 0, width, height, layer=self.layer.name)
-            cancelled = False
             try:
-                cancelled = not (self._look(scene, result) and self._run_passes(render, result))
-                self._write_everything(render, result)
+                finished = self._look(scene, result) and self._run_passes(render, result)
+                cancelled = not (self._write_everything(render, result, denoised=self.denoise and finished) and finished)
                 if self.capture is not None and render.passes_done:
                     self.capture.take(self.layer.name, render)
                     self.capture.stopped |= cancelled
@@ -114,7 +111,11 @@ class _FinalRender:
 
     def _refuse_what_does_not_fit(self) -> None:
         width, height = self.frame.region_size
-        needed = memory.film_bytes(width * height, self.settings.passes, self.settings.spectral_bins)
+        bins = self.settings.spectral_bins
+        needed = memory.film_bytes(width * height, self.settings.passes, bins)
+        needed += memory.copies_bytes(width * height, bins, self.denoise)
+        whole = width * height if self.scene.render.use_crop_to_border else self.frame.width * self.frame.height
+        needed += memory.result_bytes(whole, [row.source for row in self.passes])
         available = memory.available_bytes()
         if available is not None and needed > _MEMORY_SHARE * available:
             raise OpalError(
@@ -131,7 +132,9 @@ class _FinalRender:
             raise Stopped
 
     def _translate(self) -> Scene:
-        builder = SceneBuilder(self.report, self.settings.threads, self._stage, self.engine.is_preview, undisturbed=self._undisturbed)
+        builder = SceneBuilder(
+            self.report, self.settings.threads, self._stage, self.engine.is_preview, undisturbed=self._undisturbed, aside=self._aside
+        )
         try:
             motion = self.settings.motion_blur
             start, end = _shutter(self.scene.render) if motion else (0.0, 0.0)
@@ -179,6 +182,9 @@ class _FinalRender:
             return read()
 
         return main_thread.call(read_what_is_there, lambda: self._stage("Reading objects"))
+
+    def _aside(self, work: Callable[[], None], cancel: Callable[[], None]) -> None:
+        stopping.run(work, cancel, self.engine.test_break, name="Opal scene")
 
     def _go_to(self, time_in_frames: float) -> None:
         whole = int(np.floor(time_in_frames))
@@ -245,31 +251,19 @@ class _FinalRender:
         return True
 
     def _run_pass(self, render: Render, first: int, number: int, total: int, begun: float) -> bool:
-        failures: list[BaseException] = []
-
-        def work() -> None:
-            try:
-                render.run_pass(first + number)
-            except BaseException as error:
-                failures.append(error)
-
-        worker = threading.Thread(target=work, name="Opal pass")
-        worker.start()
-        stopped = False
         last_told = -np.inf
-        while worker.is_alive():
-            worker.join(_POLL_SECONDS)
-            if not stopped and self.engine.test_break():
-                stopped = True
-                render.cancel()
+
+        def tell() -> None:
+            nonlocal last_told
             if (now := time.monotonic()) - last_told > 0.25:
                 last_told = now
                 self._tell(number, total, number + render.progress, now - begun)
-        for failure in failures:
-            if not isinstance(failure, Cancelled):
-                raise failure
+
+        try:
+            stopping.run(lambda: render.run_pass(first + number), render.cancel, self.engine.test_break, tell, "Opal pass")
+        except Stopped:
             return False
-        return not stopped
+        return True
 
     def _tell(self, number: int, total: int, done: float, elapsed: float) -> None:
         limit = self.scene.opal.time_limit
@@ -289,19 +283,31 @@ class _FinalRender:
         _put(result, "Combined", render.film(Pass.COMBINED))
         self.engine.update_result(result)
 
-    def _write_everything(self, render: Render, result: Any) -> None:
+    def _write_everything(self, render: Render, result: Any, denoised: bool) -> bool:
+        """Hands every pass to Blender; False if the person stopped the denoising, whose picture is then the noisy one."""
         combined = render.film(Pass.COMBINED)
-        if self.denoise and render.passes_done:
-            combined = self._denoised(render, combined)
+        finished = True
+        if denoised and render.passes_done:
+            try:
+                combined = self._denoised(render, combined)
+            except Stopped:
+                finished = False
         _put(result, "Combined", combined)
         for row in self.passes:
             _put(result, row.name, render.film(row.source))
+        return finished
 
     def _denoised(self, render: Render, combined: np.ndarray) -> np.ndarray:
         self.engine.update_stats("", "Denoising")
+        guides = render.film(Pass.ALBEDO), render.film(Pass.NORMAL)
+        stop = threading.Event()
+
+        def work() -> np.ndarray:
+            return denoise.denoise(combined, *guides, threads=self.settings.threads, wants_stop=stop.is_set)
+
         try:
-            guides = render.film(Pass.ALBEDO), render.film(Pass.NORMAL)
-            return denoise.denoise(combined, *guides, threads=self.settings.threads)
+            # One layer of the network may take a second for a large picture, and ends only as a whole.
+            return stopping.run(work, stop.set, self.engine.test_break, name="Opal denoising", owns_all=True)
         except OpalError as error:
             self.report.add("", f"The picture is not denoised: {error}")
             return combined
@@ -321,10 +327,10 @@ class _FinalRender:
     def _write_spectrum(self, render: Render) -> None:
         if not self.settings.spectral_bins:
             return
-        path = spectral_exr.output_path(self.scene, self.layer.name)
         first, last = self.settings.wavelength_first, self.settings.wavelength_last
         centers = spectral_exr.bin_centers(first, last, self.settings.spectral_bins)
         try:
+            path = spectral_exr.output_path(self.scene, self.layer.name)
             spectral_exr.write(path, render.film(Pass.SPECTRAL), render.film(Pass.COMBINED), centers)
         except OpalError as error:
             self.report.add("", str(error))

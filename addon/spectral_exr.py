@@ -17,6 +17,9 @@ import bpy
 import numpy as np
 from opal_kernels.binding import OpalError
 
+# Blender's watts are not bound to a spectrum, so neither is the scale: only ratios between wavelengths and pixels are physical.
+UNITS = "relative spectral radiance: 1 at every wavelength has luminance 1 in R, G, B"
+
 
 def bin_centers(first: float, last: float, bins: int) -> np.ndarray:
     """Middle of each bin in nm, shape (bins,)."""
@@ -30,8 +33,16 @@ def channel_name(wavelength: float) -> str:
 
 
 def output_path(scene: Any, layer: str) -> Path:
-    """Where a frame's spectral file goes: # are digits of the frame; a layer's name is added where there are several."""
+    """Where a frame's spectral file goes: # are digits of the frame; a layer's name is added where there are several.
+
+    Raises
+    ------
+    OpalError
+        If the scene's setting names no file.
+    """
     path = bpy.path.abspath(scene.opal.spectral_path)
+    if not path or path.endswith(("/", "\\")):
+        raise OpalError("The spectral file cannot be written: Spectral EXR › File names no file.")
     path = re.sub(r"#+", lambda run: f"{scene.frame_current:0{len(run.group())}d}", path)
     if not path.lower().endswith(".exr"):
         path += ".exr"
@@ -86,7 +97,7 @@ def write(path: Path, spectra: np.ndarray, rgb: np.ndarray, wavelengths: Sequenc
     spec = oiio.ImageSpec(width, height, 3 + bins, "float")
     spec.channelnames = ("R", "G", "B", *map(channel_name, wavelengths))
     spec.attribute("spectralLayoutVersion", "1.0")
-    spec.attribute("emissiveUnits", "W.m^-2.sr^-1.nm^-1")
+    spec.attribute("emissiveUnits", UNITS)
     spec.attribute("compression", "zip")
     pixels = np.ascontiguousarray(np.concatenate((rgb[..., :3], spectra), axis=2)[::-1], np.float32)
     try:

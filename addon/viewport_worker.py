@@ -160,7 +160,8 @@ class Worker:
             self._redraw()
         if final and self._denoised and (passes & (passes - 1) == 0 or passes == self.total) and not self._stopping:
             guides = render.film(Pass.ALBEDO), render.film(Pass.NORMAL)
-            self.picture = denoise.denoise(render.film(Pass.COMBINED), *guides, threads=self._settings.threads)
+            picture = render.film(Pass.COMBINED)
+            self.picture = denoise.denoise(picture, *guides, threads=self._settings.threads, wants_stop=lambda: self._stopping)
         if final and self._denoised:
             self._redraw()
 

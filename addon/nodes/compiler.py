@@ -7,6 +7,7 @@ every shader node is met once, with the sum of what all ways to it leave.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -18,6 +19,8 @@ from .program import ONE, ZERO, Input, ProgramBuilder, Table, Value, constant
 from .registry import SHADER_READERS, VALUE_READERS, ShaderReader
 from .tree import EndlessGroups, Frame, Links, Source, source_of
 
+# Its square still is a number of single precision.
+_BRIGHTEST = 1e18
 _MIX, _ADD = "ShaderNodeMixShader", "ShaderNodeAddShader"
 
 
@@ -50,6 +53,14 @@ class NodeView:
         socket = self._socket(name)
         return default if socket is None else self._compiler.input_value(self._frame, socket)
 
+    def light(self, name: str, default: Value = ZERO) -> Value:
+        """`value` of a colour or strength of light: what would overflow when it is multiplied is as bright as can be instead."""
+        found = self.value(name, default)
+        if found.constant is None or max(map(abs, found.constant[:3])) <= _BRIGHTEST:
+            return found
+        self.problem(f"“{name}” is too large to calculate with; {_BRIGHTEST:g} is taken for it.")
+        return Value(tuple(min(max(x, -_BRIGHTEST), _BRIGHTEST) for x in found.constant))
+
     def linked(self, name: str) -> Value | None:
         """What is linked to an input, or None; for sockets whose default is not a number (Normal, Vector...)."""
         socket = self._socket(name)
@@ -58,6 +69,10 @@ class NodeView:
     def output_used(self, name: str) -> bool:
         """Whether an output is linked to anything."""
         return any(s.is_linked for s in self.node.outputs if name in (s.identifier, s.name))
+
+    def own_output(self, name: str) -> Value:
+        """What a node without inputs is set to give, as Value and RGB nodes are."""
+        return self._compiler.setting(self.node.outputs[name])
 
     def normal(self, name: str = "Normal") -> Value | None:
         """A Normal input; None is the shading normal, tilted by the material's displacement where there is one."""
@@ -140,12 +155,21 @@ class Compiler:
 
     def _value(self, source: Source, socket: Any) -> Value:
         if source.node is None:
-            return _convert(self.builder, _setting(source.socket), source.socket.type, socket.type)
+            return _convert(self.builder, self.setting(source.socket), source.socket.type, socket.type)
         outputs = self._outputs_of(source)
         value = outputs.get(source.socket.identifier) or outputs.get(source.socket.name)
         if value is None:
-            return _convert(self.builder, _setting(socket), socket.type, socket.type)
+            return _convert(self.builder, self.setting(socket), socket.type, socket.type)
         return _convert(self.builder, value, source.socket.type, socket.type)
+
+    def setting(self, socket: Any) -> Value:
+        """The value that an unlinked socket has by itself; what is not finite would turn whole pictures black, so it counts as 0."""
+        value = _setting(socket)
+        if all(map(math.isfinite, value.constant)):
+            return value
+        node = socket.node
+        self.problem(node.label or node.name, f"“{socket.name}” is not a finite number; 0 is taken for it.", lost=True)
+        return Value(tuple(x if math.isfinite(x) else 0.0 for x in value.constant))
 
     def _outputs_of(self, source: Source) -> dict[str, Value]:
         """What a node gives. Everything upstream is read first, without recursion, for chains of any length."""

@@ -16,12 +16,12 @@ from .registry import reads
 
 @reads("ShaderNodeValue")
 def value(n: NodeView) -> dict[str, Value]:
-    return {"Value": constant(n.node.outputs[0].default_value)}
+    return {"Value": n.own_output("Value")}
 
 
 @reads("ShaderNodeRGB")
 def rgb(n: NodeView) -> dict[str, Value]:
-    return {"Color": constant(*n.node.outputs[0].default_value)}
+    return {"Color": n.own_output("Color")}
 
 
 @reads("ShaderNodeTexCoord")

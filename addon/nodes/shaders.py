@@ -80,7 +80,7 @@ def sheen(n: NodeView, weight: Value) -> None:
 
 @shades("ShaderNodeEmission", "ShaderNodeBackground")
 def emission(n: NodeView, weight: Value) -> None:
-    n.emit(Op.EMISSION, 0, weight, n.value("Color"), n.value("Strength"))
+    n.emit(Op.EMISSION, 0, weight, n.light("Color"), n.light("Strength"))
 
 
 @shades("ShaderNodeHoldout")
@@ -134,6 +134,7 @@ def principled(n: NodeView, weight: Value) -> None:
         n.problem("Light does not travel under the surface; subsurface is shaded as diffuse of the base colour.")
     if number("Thin Wall").number != 0:
         n.problem("Thin walls are not shaded; the surface bounds a solid.")
+    _no_thin_film(n)
     anisotropic = number("Anisotropic")
     n.emit(
         Op.PRINCIPLED,
@@ -146,7 +147,7 @@ def principled(n: NodeView, weight: Value) -> None:
         pack_color(number("Specular Tint", ONE), number("Specular IOR Level", constant(0.5))),
         pack_color(number("Coat Tint", ONE), number("Coat Weight")),
         pack_color(number("Sheen Tint", ONE), number("Sheen Weight")),
-        pack_color(number("Emission Color", ONE), number("Emission Strength")),
+        pack_color(n.light("Emission Color", ONE), n.light("Emission Strength")),
         pack(number("Metallic"), number("Roughness"), number("IOR"), number("Alpha", ONE)),
         pack(number("Diffuse Roughness"), number("Subsurface Weight"), anisotropic, number("Anisotropic Rotation")),
         pack(number("Transmission Weight"), number("Coat Roughness"), number("Coat IOR"), number("Sheen Roughness")),

@@ -4,15 +4,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from opal_kernels import camera as optics
 from opal_kernels.descriptions import Camera, CameraType
 
+from ..finiteness import all_finite, matrix_is_finite, misplaced_by
 from ..identity import Named
 
 Report = Callable[..., None]  # `report.Report.add`
+
+# Numbers of a camera that make its window and its clipping: property, label.
+_NUMBERS = (
+    ("lens", "Focal Length"),
+    ("sensor_width", "Sensor Width"),
+    ("sensor_height", "Sensor Height"),
+    ("shift_x", "Shift X"),
+    ("shift_y", "Shift Y"),
+    ("ortho_scale", "Orthographic Scale"),
+    ("clip_start", "Clip Start"),
+    ("clip_end", "Clip End"),
+)
 
 
 def _ignore(*_what: Any) -> None:
@@ -75,6 +88,15 @@ def _lens(camera_object: Any, scene: Any, matrix: Any, report: Report) -> tuple[
     return window, fields
 
 
+def _refuse_what_is_not_finite(camera_object: Any, matrices: Iterable[Any], fields: dict[str, Any]) -> None:
+    data = camera_object.data
+    wrong = [misplaced_by(camera_object) for m in matrices if m is not None and not matrix_is_finite(m)]
+    wrong += [label for name, label in _NUMBERS if not all_finite([getattr(data, name, 0.0)])]
+    if wrong or not all_finite(fields.values()):
+        wrong.append("Depth of Field")
+        raise ValueError(f"The camera “{camera_object.name}” cannot be rendered from: its {wrong[0]} is not finite.")
+
+
 def camera_from_object(
     camera_object: Any,
     scene: Any,
@@ -103,10 +125,11 @@ def camera_from_object(
     Raises
     ------
     ValueError
-        If the frame or the field of view is empty.
+        If the frame or the field of view is empty, or a number of the camera is not finite.
     """
     matrix = camera_object.matrix_world if matrix is None else matrix
     window, fields = _lens(camera_object, scene, matrix, report)
+    _refuse_what_is_not_finite(camera_object, (matrix, matrix_end), fields)
     aspect = (scene.render.pixel_aspect_x, scene.render.pixel_aspect_y)
     return Camera(
         transform=optics.rigid(matrix),

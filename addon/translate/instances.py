@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from ..finiteness import misplaced_by
 from ..identity import Named
 from .voxels import source_of
 
@@ -123,7 +124,9 @@ def collect(
         obj = instance.object
         kind = obj.type
         if kind == "LIGHT":
-            if on_light is not None and np.isfinite(matrices[row]).all():
+            if not np.isfinite(matrices[row]).all():
+                visible.problems.append((Named(obj), f"the lamp is left out: its {misplaced_by(obj)} is not finite"))
+            elif on_light is not None:
                 on_light(obj, matrices[row])
             continue
         if kind not in {"MESH", "VOLUME"}:

@@ -8,6 +8,7 @@ from typing import Any
 
 from opal_kernels.descriptions import Light, LightType, Ray
 
+from ..finiteness import all_finite
 from ..identity import Named
 
 Report = Callable[..., None]  # `report.Report.add`
@@ -168,6 +169,11 @@ def light_from_object(
     power = data.energy * 2.0 ** getattr(data, "exposure", 0.0)
     if power == 0.0 or not any(color):
         return None
+    shape = reader(data)
+    for part, values in (("Power", [power]), ("Color", color), ("Size", shape.values())):
+        if not all_finite(values):
+            report(Named(obj), f"the lamp is left out: its {part} is not finite", part, True)
+            return None
     m = obj.matrix_world if matrix is None else matrix
     spectrum = lamp_spectrum(data)
     return Light(
@@ -179,7 +185,7 @@ def light_from_object(
         cast_shadow=int(data.use_shadow),
         normalize=int(getattr(data, "normalize", True)),
         receivers=receivers,
-        **reader(data),
+        **shape,
     )
 
 

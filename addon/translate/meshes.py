@@ -7,7 +7,7 @@ polygon's corner that each of the 3 corners of each triangle comes from, and eve
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -75,7 +75,11 @@ def _attribute(mesh: Any, name: str, components: int, dtype: Any, property_name:
     return _read(data, property_name, len(data), components, dtype)
 
 
-def read_mesh(mesh: Any, needs: MeshNeeds | None = None) -> MeshArrays | None:
+def _nothing() -> None:
+    pass
+
+
+def read_mesh(mesh: Any, needs: MeshNeeds | None = None, between: Callable[[], None] = _nothing) -> MeshArrays | None:
     """Arrays of an evaluated mesh.
 
     Parameters
@@ -84,6 +88,8 @@ def read_mesh(mesh: Any, needs: MeshNeeds | None = None) -> MeshArrays | None:
         Evaluated, not in edit mode.
     needs : MeshNeeds, optional
         What else to read; None reads the shape alone.
+    between : callable
+        Called between the parts, each of which takes a while for millions of triangles; may raise to give up.
 
     Returns
     -------
@@ -94,6 +100,7 @@ def read_mesh(mesh: Any, needs: MeshNeeds | None = None) -> MeshArrays | None:
     if len(mesh.polygons) == 0:
         return None
     mesh.calc_loop_triangles()
+    between()
     n_triangles = len(mesh.loop_triangles)
     if n_triangles == 0:
         return None
@@ -107,11 +114,13 @@ def read_mesh(mesh: Any, needs: MeshNeeds | None = None) -> MeshArrays | None:
     polygon = _read(mesh.loop_triangle_polygons, "value", n_triangles, 1, np.int32)
     vertex = _attribute(mesh, ".corner_vert", 1, np.int32, "value")[corner]
     arrays = MeshArrays(positions=_attribute(mesh, "position", 3, np.float32, "vector"), triangles=vertex.reshape(n_triangles, 3))
+    between()
 
     if mesh.normals_domain == "POINT":
         arrays.corner_normals = _read(mesh.vertex_normals, "vector", n_vertices, 3, np.float32)[vertex]
     elif mesh.normals_domain == "CORNER":
         arrays.corner_normals = _read(mesh.corner_normals, "vector", n_corners, 3, np.float32)[corner]
+    between()
 
     slots = mesh.attributes.get("material_index")
     if slots is not None and slots.domain == "FACE":
@@ -120,9 +129,11 @@ def read_mesh(mesh: Any, needs: MeshNeeds | None = None) -> MeshArrays | None:
     if needs.generated:
         arrays.generated = _generated(mesh, n_vertices)
     for name, number in needs.attributes.items():
+        between()
         if (values := _shader_attribute(mesh, name, corner, polygon, arrays.problems)) is not None:
             arrays.attributes.append((number, *values))
     if needs.tangent_uv is not None:
+        between()
         arrays.corner_tangents = _tangents(mesh, needs.tangent_uv, corner, arrays)
     return arrays
 

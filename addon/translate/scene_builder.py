@@ -33,10 +33,6 @@ from .world import add_world_medium, world_from_scene
 _PREVIEW_ABSORPTION = 0.0065 / 2.0
 
 
-class Stopped(Exception):
-    """The person stopped the render during the translation."""
-
-
 @dataclass
 class Snapshot:
     """What was read from Blender at one time, without references into it."""
@@ -60,6 +56,10 @@ def _at_once(read: Callable[[], Any], _depsgraph: Any) -> Any:
     return read()
 
 
+def _here(work: Callable[[], None], _cancel: Callable[[], None]) -> None:
+    work()
+
+
 class SceneBuilder:
     """Builds a kernel scene from a depsgraph.
 
@@ -70,13 +70,15 @@ class SceneBuilder:
     threads : int
         0 takes every core.
     stage : callable
-        Called with a few words before each step, and with the fraction done in long ones; may raise `Stopped`.
+        Called with a few words before each step, and with the fraction done in long ones; may raise `stopping.Stopped`.
     preview : bool
         Gems absorb as stones of usual size do, not as the boulders that Blender's preview shows.
     map_width : int, optional
         Pixels across the world's importance map, at most; it says where samples go, not how bright anything is.
     undisturbed : callable
         Calls its first argument, which reads original data-blocks through the depsgraph that is the second.
+    aside : callable
+        Calls its first argument, which builds the kernels' scene and touches nothing of Blender's; its second makes the first stop.
     """
 
     def __init__(
@@ -87,8 +89,10 @@ class SceneBuilder:
         preview: bool = False,
         map_width: int | None = None,
         undisturbed: Callable[[Callable[[], Any], Any], Any] = _at_once,
+        aside: Callable[[Callable[[], None], Callable[[], None]], None] = _here,
     ) -> None:
-        self._report, self._stage, self._undisturbed = report, stage, undisturbed
+        self._report, self._stage, self._undisturbed, self._aside = report, stage, undisturbed, aside
+        self._stopping, self._reading = False, ""
         self._map_width = map_width
         self.scene = Scene(threads=threads)
         self.spectra = Spectra(self.scene)
@@ -104,7 +108,8 @@ class SceneBuilder:
         visible = self._undisturbed(lambda: self._read_blocks(depsgraph, snapshot), depsgraph)
         needs = self.context.mesh_needs()
         for count, group in enumerate(visible.groups):
-            self._stage(f"Reading meshes, {count + 1} of {len(visible.groups)}")
+            self._reading = f"Reading meshes, {count + 1} of {len(visible.groups)}"
+            self._stage(self._reading)
             snapshot.mesh_of_group.append(self._read_mesh(group, needs, snapshot, snapshot.bodies[count]))
         snapshot.groups = visible.groups
         return snapshot
@@ -198,7 +203,7 @@ class SceneBuilder:
             box = body.bounds()
             snapshot.meshes.setdefault(key, box_mesh(*box) if box is not None else None)
         elif key not in snapshot.meshes:
-            arrays = snapshot.meshes[key] = read_mesh(group.mesh, needs)
+            arrays = snapshot.meshes[key] = read_mesh(group.mesh, needs, lambda: self._stage(self._reading))
             for sentence in arrays.problems if arrays is not None else ():
                 self._report.add(group.name, sentence, lost=True)
             gems = [key_of(m) if m is not None and m.opal.kind == "GEM" else None for m in group.materials]
@@ -230,9 +235,19 @@ class SceneBuilder:
     def finish(self, snapshot: Snapshot, camera: Camera | None = None) -> Scene:
         """Hands everything to the kernels and commits."""
         self._stage("Building the scene")
+        self._aside(lambda: self._build(snapshot, camera), self._stop_building)
+        return self.scene
+
+    def _stop_building(self) -> None:
+        self._stopping = True
+        self.scene.cancel()
+
+    def _build(self, snapshot: Snapshot, camera: Camera | None) -> None:
         numbers: dict[int, int] = {}
         for group, materials, key in zip(snapshot.groups, snapshot.materials, snapshot.mesh_of_group, strict=True):
             arrays = snapshot.meshes[key]
+            if self._stopping:
+                break
             if arrays is None:
                 snapshot.first_instances.append(-1)
                 continue
@@ -253,7 +268,6 @@ class SceneBuilder:
         if camera is not None:
             self.scene.set_camera(camera)
         self.scene.commit()
-        return self.scene
 
     def _add_mesh(self, arrays: MeshArrays, name: str) -> int:
         from opal_kernels import binding

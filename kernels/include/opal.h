@@ -38,7 +38,7 @@ typedef enum opal_status {
   OPAL_ERROR_ARGUMENT = -1,  /* a value is out of range, or an index does not exist */
   OPAL_ERROR_MEMORY = -2,    /* out of memory */
   OPAL_ERROR_EMBREE = -3,    /* Embree was not found, is too old, or reported an error */
-  OPAL_ERROR_CANCELLED = -4, /* opal_render_cancel was called */
+  OPAL_ERROR_CANCELLED = -4, /* opal_render_cancel or opal_scene_cancel was called */
   OPAL_ERROR_INTERNAL = -5
 } opal_status;
 
@@ -342,6 +342,9 @@ OPAL_EXPORT int32_t opal_scene_set_camera(opal_scene *scene, const opal_camera_d
 
 /* Builds what changed: acceleration structures, light tables, caster bounds. */
 OPAL_EXPORT int32_t opal_scene_commit(opal_scene *scene);
+/* Ends the commit that runs, or else the next one, with OPAL_ERROR_CANCELLED; from any thread. Another commit has to build
+ * the rest before the scene is rendered. */
+OPAL_EXPORT void opal_scene_cancel(opal_scene *scene);
 
 typedef struct opal_scene_statistics {
   int64_t triangles, instances, lights, emissive_triangles, memory_bytes;
@@ -413,7 +416,7 @@ enum {
   OPAL_PASS_INDIRECT = 7,  /* 3: more than one, caustics excluded */
   OPAL_PASS_CAUSTICS = 8,  /* 3: brought to a diffuse surface by a specular one */
   OPAL_PASS_MEDIUM = 9,    /* 3 */
-  OPAL_PASS_SPECTRAL = 10, /* spectral_bins: radiance per nm, W/(m2 sr nm) with D65-white of luminance 1 as unit */
+  OPAL_PASS_SPECTRAL = 10, /* spectral_bins: radiance per nm, relative: 1 throughout has luminance 1 */
   OPAL_PASS_NOISE = 11,    /* 1: estimated standard error of the luminance */
   /* Layers for compositing over a picture that another engine made (src/integrator/layers.h); they add up to Combined,
    * Behind apart. 4 each: premultiplied, alpha is the share of camera rays whose first event fell there. */

@@ -9,16 +9,20 @@ from __future__ import annotations
 
 import ctypes
 import threading
-from ctypes import c_bool, c_char_p, c_int, c_size_t, c_void_p
+from collections.abc import Callable
+from ctypes import c_bool, c_char_p, c_double, c_int, c_size_t, c_void_p
 from typing import Any
 
 import numpy as np
 
 from . import libraries
-from .binding import OpalError, as_array
+from .binding import Cancelled, OpalError, as_array
 
 _DEVICE_CPU = 1
 _FORMAT_FLOAT3 = 3
+_ERROR_CANCELLED = 6
+# Called by Open Image Denoise's threads with the part that is done; false ends the filter.
+_Monitor = ctypes.CFUNCTYPE(c_bool, c_void_p, c_double)
 _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "oidnNewDevice": (c_void_p, [c_int]),
     "oidnCommitDevice": (None, [c_void_p]),
@@ -31,6 +35,7 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
         [c_void_p, c_char_p, c_void_p, c_int, c_size_t, c_size_t, c_size_t, c_size_t, c_size_t],
     ),
     "oidnSetFilterBool": (None, [c_void_p, c_char_p, c_bool]),
+    "oidnSetFilterProgressMonitorFunction": (None, [c_void_p, _Monitor, c_void_p]),
     "oidnCommitFilter": (None, [c_void_p]),
     "oidnExecuteFilter": (None, [c_void_p]),
     "oidnReleaseFilter": (None, [c_void_p]),
@@ -64,7 +69,13 @@ def _open() -> tuple[ctypes.CDLL | None, str]:
     return opened, ""
 
 
-def denoise(color: np.ndarray, albedo: np.ndarray, normal: np.ndarray, threads: int = 0) -> np.ndarray:
+def denoise(
+    color: np.ndarray,
+    albedo: np.ndarray,
+    normal: np.ndarray,
+    threads: int = 0,
+    wants_stop: Callable[[], bool] | None = None,
+) -> np.ndarray:
     """A picture without its noise.
 
     Parameters
@@ -75,6 +86,8 @@ def denoise(color: np.ndarray, albedo: np.ndarray, normal: np.ndarray, threads: 
         (height, width, 3) guides; normals in world space, -1 to 1.
     threads : int
         0 takes every core.
+    wants_stop : callable, optional
+        Asked again and again, from other threads, whether to give up.
 
     Returns
     -------
@@ -85,6 +98,8 @@ def denoise(color: np.ndarray, albedo: np.ndarray, normal: np.ndarray, threads: 
     ------
     OpalError
         If there is no Open Image Denoise, or it fails.
+    Cancelled
+        If ``wants_stop`` said so.
     """
     if reason := unavailable():
         raise OpalError(reason)
@@ -97,14 +112,15 @@ def denoise(color: np.ndarray, albedo: np.ndarray, normal: np.ndarray, threads: 
         b"output": np.empty((height, width, 3), np.float32),
     }
     out = color.copy()
-    _run(images, width, height, threads)
+    _run(images, width, height, threads, wants_stop or (lambda: False))
     out[..., :3] = images[b"output"]
     return out
 
 
-def _run(images: dict[bytes, np.ndarray], width: int, height: int, threads: int) -> None:
+def _run(images: dict[bytes, np.ndarray], width: int, height: int, threads: int, wants_stop: Callable[[], bool]) -> None:
     api = _library
     assert api is not None
+    monitor = _Monitor(lambda _user, _done: not wants_stop())
     device = api.oidnNewDevice(_DEVICE_CPU)
     if not device:
         raise OpalError("Open Image Denoise has no device for this processor.")
@@ -117,11 +133,15 @@ def _run(images: dict[bytes, np.ndarray], width: int, height: int, threads: int)
             for name, pixels in images.items():
                 api.oidnSetSharedFilterImage(filter_handle, name, pixels.ctypes.data, _FORMAT_FLOAT3, width, height, 0, 0, 0)
             api.oidnSetFilterBool(filter_handle, b"hdr", True)
+            api.oidnSetFilterProgressMonitorFunction(filter_handle, monitor, None)
             api.oidnCommitFilter(filter_handle)
             api.oidnExecuteFilter(filter_handle)
             api.oidnReleaseFilter(filter_handle)
         message = c_char_p()
-        if api.oidnGetDeviceError(device, ctypes.byref(message)):
+        error = api.oidnGetDeviceError(device, ctypes.byref(message))
+        if error == _ERROR_CANCELLED:
+            raise Cancelled("Cancelled")
+        if error:
             raise OpalError(f"Open Image Denoise failed: {(message.value or b'').decode('utf-8', 'replace')}.")
     finally:
         api.oidnReleaseDevice(device)

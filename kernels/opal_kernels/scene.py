@@ -280,8 +280,18 @@ class Scene:
     # ---- Use ----
 
     def commit(self) -> None:
-        """Builds what changed since the last commit."""
+        """Builds what changed since the last commit.
+
+        Raises
+        ------
+        Cancelled
+            If `cancel` was called; the scene has to be committed again before it is rendered.
+        """
         binding.scene_commit(self.handle)
+
+    def cancel(self) -> None:
+        """Asks the commit that runs, or else the next one, to stop; from any thread."""
+        binding.scene_cancel(self.handle)
 
     @property
     def statistics(self) -> dict[str, Any]:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The engine as a good citizen: it is registered, renders, ends when told, writes what it promises."""
 
-import threading
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -69,38 +69,6 @@ def test_the_noise_threshold_ends_the_render_once_it_is_reached(tmp_path):
     assert picture.std() / picture.mean() < 0.1
 
 
-def test_a_running_pass_stops_within_a_third_of_a_second(monkeypatch):
-    """Escape is Blender's `test_break`: here it turns true while one very long pass runs."""
-    scene = busy_scene(passes=1)
-    scene.render.resolution_x, scene.render.resolution_y, scene.opal.samples_per_pass = 640, 480, 64
-    final_render = stage.addon("final_render")
-    pressed = {}
-
-    class Wrapped(final_render._FinalRender):
-        def _run_pass(self, render, *arguments):
-            timer = threading.Timer(0.5, lambda: pressed.setdefault("at", time.perf_counter()))
-            timer.start()
-            outer = self.engine
-
-            class Engine:
-                def test_break(self):
-                    return "at" in pressed
-
-                def __getattr__(self, name):
-                    return getattr(outer, name)
-
-            self.engine = Engine()
-            finished = super()._run_pass(render, *arguments)
-            pressed["stopped"] = time.perf_counter()
-            self.engine = outer
-            return finished
-
-    monkeypatch.setattr(final_render, "_FinalRender", Wrapped)
-    bpy.ops.render.render()
-    assert pressed["stopped"] > pressed["at"], "the pass was too short to be stopped"
-    assert pressed["stopped"] - pressed["at"] < 0.3
-
-
 def test_progress_statistics_and_time_left_are_told(monkeypatch, tmp_path):
     busy_scene(passes=3)
     final_render = stage.addon("final_render")
@@ -154,6 +122,11 @@ def test_a_spectral_file_holds_the_light_of_a_white_world(tmp_path):
     visible = (wavelengths[order] > 420) & (wavelengths[order] < 680)
     np.testing.assert_allclose(measured[order][visible], white[order][visible], rtol=0.1)
     assert picture[..., :3].mean() == pytest.approx(1.0, rel=0.03)
+    # What the file says of its unit: weighed by the eye's sensitivity its mean is the luminance of the picture.
+    eye = np.interp(wavelengths, colour.WAVELENGTHS_NM, colour.observer()[1])
+    luminance = (picture[..., :3] @ (0.2126729, 0.7151522, 0.0721750)).mean()
+    assert (measured * eye).sum() / eye.sum() == pytest.approx(luminance, rel=0.01)
+    assert image.spec().getattribute("emissiveUnits").startswith("relative")
 
 
 def test_denoising_lowers_noise_and_keeps_the_mean(tmp_path):
@@ -177,6 +150,47 @@ def test_denoising_lowers_noise_and_keeps_the_mean(tmp_path):
     assert np.mean(clean) == pytest.approx(np.mean(noisy), rel=0.02)
 
 
+class DrawnLayout:
+    """Takes what a panel draws: the properties and the texts."""
+
+    active = enabled = True
+
+    def __init__(self):
+        self.properties, self.texts = [], []
+
+    def prop(self, _owner, name, **_):
+        self.properties.append(name)
+
+    def label(self, text="", **_):
+        self.texts.append(text)
+
+
+def test_without_a_denoiser_its_setting_is_greyed_out_and_says_why(monkeypatch, tmp_path):
+    from opal_kernels import denoise
+
+    panel = stage.addon("panels").OPAL_RENDER_PT_denoise
+
+    def drawn():
+        header, body = DrawnLayout(), DrawnLayout()
+        panel.draw_header(SimpleNamespace(layout=header), bpy.context)
+        panel.draw_settings(SimpleNamespace(layout=body), body, bpy.context.scene.opal, bpy.context)
+        assert header.properties == ["denoise"]
+        return header.enabled, body.texts
+
+    reason = "This build of Blender carries no Open Image Denoise."
+    monkeypatch.setattr(denoise, "unavailable", lambda: reason)
+    assert drawn() == (False, [reason])
+    # A file whose setting was made where there is a denoiser renders, and the report says what is missing.
+    stage.scene().opal.denoise = True
+    stage.camera()
+    stage.world()
+    assert stage.render(tmp_path)[..., :3].mean() > 0.5
+    assert any(reason in entry for entry in stage.problems()), stage.problems()
+    monkeypatch.setattr(denoise, "unavailable", lambda: "")
+    enabled, texts = drawn()
+    assert enabled and reason not in texts
+
+
 def test_material_previews_are_rendered_fast(tmp_path):
     material = stage.matte()
     material.opal.kind = "GEM"
@@ -193,3 +207,19 @@ def test_what_cannot_be_read_is_named_in_the_report(tmp_path):
     stage.plane("Card", size=20, material=stage.node_material("Toon one", "BsdfToon"))
     stage.render(tmp_path)
     assert any("Toon one" in entry for entry in stage.problems()), stage.problems()
+
+
+@pytest.mark.parametrize("kind", ["BsdfPrincipled", "BsdfGlass", "BsdfMetallic"])
+def test_a_thin_film_that_is_not_shaded_is_named(kind, tmp_path):
+    stage.scene()
+    stage.camera((0, 0, 5))
+    material = stage.node_material("Soap", kind)
+    stage.plane(size=20, material=material)
+    stage.render(tmp_path)
+    assert not stage.problems()
+    shader = next(node for node in material.node_tree.nodes if node.outputs[0].type == "SHADER")
+    if "Thin Film Thickness" not in shader.inputs:
+        pytest.skip(f"this Blender's {shader.bl_label} has no thin film")
+    shader.inputs["Thin Film Thickness"].default_value = 400.0
+    stage.render(tmp_path)
+    assert any("Soap" in entry and "Thin films" in entry for entry in stage.problems()), stage.problems()

@@ -212,6 +212,66 @@ def test_cancelling_from_another_thread_ends_a_pass_and_leaves_whole_passes(scen
 
 
 @needs_embree
+def test_a_commit_that_was_cancelled_refuses_to_render_and_the_next_builds_the_rest(scene):
+    floor(scene)
+    scene.set_world(World(programs.emission()))
+    scene.set_camera(transform=ABOVE)
+    scene.cancel()
+    with pytest.raises(binding.Cancelled):
+        scene.commit()
+    with pytest.raises(OpalError, match="not committed"):
+        Render(scene)
+    scene.commit()
+    with Render(scene, width=8, height=8, samples_per_pass=64, photons_per_pass=0) as render:
+        np.testing.assert_allclose(render.run(4).film()[..., :3].mean(), 0.5, rtol=0.01)
+
+
+@needs_embree
+def test_a_running_commit_ends_when_it_is_told_to():
+    """In the midst of Embree's building: it takes a small part of the time that it would have taken."""
+    edge = 700
+    x, y = np.meshgrid(np.arange(edge, dtype=np.float32), np.arange(edge, dtype=np.float32))
+    positions = np.stack((x, y, np.sin(x) * np.cos(y)), axis=2).reshape(-1, 3)
+    corner = (np.arange(edge - 1)[:, None] * edge + np.arange(edge - 1)).reshape(-1, 1)
+    triangles = np.concatenate((corner + (0, 1, edge), corner + (1, edge + 1, edge))).astype(np.int32)
+
+    def seconds(cancel_after=None):
+        """Of the clock and of the processor."""
+        with Scene(threads=1) as scene:
+            scene.add_instances(scene.add_mesh(positions, triangles), [np.eye(4)])
+            begun = time.perf_counter(), time.process_time()
+            if cancel_after is None:
+                scene.commit()
+            else:
+                timer = threading.Timer(cancel_after, scene.cancel)
+                timer.start()
+                with pytest.raises(binding.Cancelled):
+                    scene.commit()
+                timer.cancel()
+            return time.perf_counter() - begun[0], time.process_time() - begun[1]
+
+    whole, work = seconds()
+    _, work_done = seconds(0.15 * whole)
+    assert work_done < 0.6 * work, f"{work_done:.2f} s of work were done, {work:.2f} s are to be done in all"
+
+
+def test_denoising_ends_when_it_is_told_to():
+    from opal_kernels import denoise
+
+    if reason := denoise.unavailable():
+        pytest.skip(reason)
+    noisy = np.random.default_rng(1).random((64, 96, 3), np.float32)
+    guides = np.full_like(noisy, 0.5), np.zeros_like(noisy)
+    asked = []
+    with pytest.raises(binding.Cancelled):
+        denoise.denoise(noisy, *guides, wants_stop=lambda: asked.append(True) or len(asked) > 2)
+    assert 2 < len(asked) < 50
+    clean = denoise.denoise(noisy, *guides, wants_stop=lambda: False)
+    np.testing.assert_array_equal(clean, denoise.denoise(noisy, *guides))
+    assert clean.std() < 0.5 * noisy.std()
+
+
+@needs_embree
 def test_emissive_faces_light_the_floor(scene):
     floor(scene)
     lamp = scene.add_mesh(SQUARE * 0.5, HALVES)

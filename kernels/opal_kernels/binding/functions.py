@@ -57,6 +57,7 @@ SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "opal_scene_set_world": (c_int32, [c_void_p, POINTER(WorldStruct)]),
     "opal_scene_set_camera": (c_int32, [c_void_p, POINTER(CameraStruct)]),
     "opal_scene_commit": (c_int32, [c_void_p]),
+    "opal_scene_cancel": (None, [c_void_p]),
     "opal_scene_get_statistics": (c_int32, [c_void_p, POINTER(SceneStatisticsStruct)]),
     "opal_scene_intersect": (c_int32, [c_void_p, c_int64, FloatPointer, FloatPointer, FloatPointer, IntPointer, IntPointer, FloatPointer]),
     "opal_render_create": (c_void_p, [c_void_p, POINTER(RenderSettingsStruct)]),

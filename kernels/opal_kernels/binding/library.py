@@ -19,7 +19,7 @@ class OpalError(RuntimeError):
 
 
 class Cancelled(OpalError):
-    """The pass was cancelled; the film holds complete passes only."""
+    """What ran was cancelled: a pass (the film holds complete passes only), a commit, or the denoising of a picture."""
 
 
 _library: ctypes.CDLL | None = None

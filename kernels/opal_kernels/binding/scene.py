@@ -459,8 +459,19 @@ def scene_set_camera(scene: int, camera: Any) -> None:
 
 
 def scene_commit(scene: int) -> None:
-    """Builds what changed: acceleration structures, light tables, bounds of what makes caustics."""
+    """Builds what changed: acceleration structures, light tables, bounds of what makes caustics; without the interpreter lock.
+
+    Raises
+    ------
+    Cancelled
+        If `scene_cancel` was called meanwhile or before; the next commit builds what this one left.
+    """
     checked(library().opal_scene_commit(scene))
+
+
+def scene_cancel(scene: int) -> None:
+    """Asks the commit that runs, or else the next one, to stop; from any thread."""
+    library().opal_scene_cancel(scene)
 
 
 def scene_get_statistics(scene: int) -> dict[str, Any]:

@@ -37,6 +37,8 @@ int32_t guarded(const Function &function) noexcept {
     return fail(OPAL_ERROR_ARGUMENT, e.what());
   } catch (const OutOfMemory &e) {
     return fail(OPAL_ERROR_MEMORY, e.what());
+  } catch (const CommitCancelled &e) {
+    return fail(OPAL_ERROR_CANCELLED, e.what());
   } catch (const EmbreeError &e) {
     return fail(OPAL_ERROR_EMBREE, e.what());
   } catch (const std::bad_alloc &) {

@@ -199,6 +199,10 @@ int32_t opal_scene_commit(opal_scene *scene) {
   });
 }
 
+void opal_scene_cancel(opal_scene *scene) {
+  if (scene) scene->cancel_commit();
+}
+
 int32_t opal_scene_get_statistics(const opal_scene *scene, opal_scene_statistics *out) {
   return guarded([&] {
     require(scene && out, "No scene");

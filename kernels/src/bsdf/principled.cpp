@@ -3,7 +3,7 @@
 // layer over diffuse.
 //
 // Every layer dims those below by its albedo towards the viewer (weight_below). Subsurface scattering is shaded as diffuse
-// reflection of its weight and thin film is left out.
+// reflection of its weight and thin film is left out, of which the add-on's report tells.
 #include "bsdf/energy.h"
 #include "bsdf/fresnel.h"
 #include "bsdf/lobe_setup.h"

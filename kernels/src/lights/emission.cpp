@@ -196,6 +196,7 @@ void EmissionTable::build(const Scene &scene, const LightTables &lights, std::ve
     add({SourceKind::Lamp, i}, lamp.brightness * lamp_reach(lamp, targets));
   }
   for (uint32_t i = 0; i < scene.emissive.size(); ++i) {
+    if (i % 4096 == 0) scene.stop_if_cancelled();
     const EmissiveTriangle &t = scene.emissive[i];
     const Emitter emitter{Emitter::Kind::TwoSided, triangle_normal(t), 2};
     const float brightness = 0.5f * (luminance(t.emission) + average(t.emission));

@@ -133,9 +133,12 @@ std::shared_ptr<LightTables> build_light_tables(const Scene &scene) {
     if (lamp.has_size()) t.sized.push_back(i);
     t.near_of_lamp[i] = add_near({SourceKind::Lamp, i}, bounds_of(lamp));
   }
+  scene.stop_if_cancelled();
   for (uint32_t i = 0; i < scene.emissive.size(); ++i)
     t.near_of_triangle[i] = add_near({SourceKind::Triangle, i}, bounds_of(scene.emissive[i]));
+  scene.stop_if_cancelled();
   t.glows = glows_of(scene);
+  scene.stop_if_cancelled();
   if (scene.lights && !scene.world_dirty) t.world = scene.lights->world;
   else t.world.build(scene);
   if (t.world.present() && t.world.brightness() > 0) t.far.push_back({SourceKind::World, 0});
@@ -145,7 +148,8 @@ std::shared_ptr<LightTables> build_light_tables(const Scene &scene) {
   if (suns > 0) t.sun_share = suns / (suns + (t.world.present() ? kPi * t.world.brightness() : 0.0f));
 
   if (t.near.size() > kFewLights) {
-    t.tree.build(t.near_bounds);
+    t.tree.build(t.near_bounds, scene.commit_cancelled);
+    scene.stop_if_cancelled();
     t.near_bounds.clear();
     t.near_bounds.shrink_to_fit();
   }

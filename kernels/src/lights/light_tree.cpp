@@ -106,7 +106,7 @@ float importance(const LightBounds &b, const Receiver &r) {
   return value;
 }
 
-void LightTree::build(std::vector<LightBounds> lights) {
+void LightTree::build(std::vector<LightBounds> lights, const std::atomic<bool> &cancel) {
   nodes_.clear();
   leaf_of_.assign(lights.size(), 0);
   if (lights.empty()) return;
@@ -114,15 +114,15 @@ void LightTree::build(std::vector<LightBounds> lights) {
   for (LightBounds &b : lights) b.finish();
   std::vector<uint32_t> order(lights.size());
   for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-  build_node(order, 0, order.size(), 0, 0, lights);
+  build_node(order, 0, order.size(), 0, 0, lights, cancel);
 }
 
 uint32_t LightTree::build_node(std::vector<uint32_t> &order, size_t first, size_t last, uint32_t parent, int depth,
-                               const std::vector<LightBounds> &lights) {
+                               const std::vector<LightBounds> &lights, const std::atomic<bool> &cancel) {
   const uint32_t me = uint32_t(nodes_.size());
   nodes_.push_back({});
   nodes_[me].parent = parent;
-  if (last - first == 1) {
+  if (last - first == 1 || cancel.load(std::memory_order_relaxed)) {
     nodes_[me].bounds = lights[order[first]];
     nodes_[me].light = order[first];
     leaf_of_[order[first]] = me;
@@ -165,8 +165,8 @@ uint32_t LightTree::build_node(std::vector<uint32_t> &order, size_t first, size_
     middle = size_t(std::partition(at(first), at(last), [&](uint32_t l) { return bucket_of(l, best_axis) <= best_bucket; }) -
                     order.begin());
   if (middle == first || middle == last) middle = (first + last) / 2;
-  const uint32_t left = build_node(order, first, middle, me, depth + 1, lights);
-  const uint32_t right = build_node(order, middle, last, me, depth + 1, lights);
+  const uint32_t left = build_node(order, first, middle, me, depth + 1, lights, cancel);
+  const uint32_t right = build_node(order, middle, last, me, depth + 1, lights, cancel);
   nodes_[me].right = right;
   nodes_[me].bounds = merge(nodes_[left].bounds, nodes_[right].bounds);
   nodes_[me].bounds.finish();

@@ -9,6 +9,7 @@
 
 #include "core/vec.h"
 
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -44,7 +45,8 @@ inline constexpr int kCutSize = 16;
 
 class LightTree {
  public:
-  void build(std::vector<LightBounds> lights);
+  // Ends early when `cancel` turns true; the tree is of no use then.
+  void build(std::vector<LightBounds> lights, const std::atomic<bool> &cancel);
   bool empty() const { return nodes_.empty(); }
 
   // The groups among which a receiver chooses first.
@@ -67,7 +69,7 @@ class LightTree {
     uint32_t light = 0;
   };
   uint32_t build_node(std::vector<uint32_t> &order, size_t first, size_t last, uint32_t parent, int depth,
-                      const std::vector<LightBounds> &lights);
+                      const std::vector<LightBounds> &lights, const std::atomic<bool> &cancel);
 
   std::vector<Node> nodes_;
   std::vector<uint32_t> leaf_of_;  // light -> node

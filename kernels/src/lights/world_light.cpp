@@ -61,12 +61,12 @@ void WorldLight::build(const Scene &scene) {
   const bool map = scene.world.map_width > 0 && !scene.world.program.constant_emission;
   const int width = map ? std::max(4, scene.world.map_width) : 32, height = std::max(2, width / 2);
   std::vector<float> values(size_t(width) * size_t(height));
-  const std::atomic<bool> never{false};
-  parallel_for(height, resolve_threads(scene.threads), never, [&](int64_t y) {
+  parallel_for(height, resolve_threads(scene.threads), scene.commit_cancelled, [&](int64_t y) {
     for (int x = 0; x < width; ++x)
       values[size_t(y) * size_t(width) + size_t(x)] = importance(
           world_radiance(scene, direction_of((float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height)), 0));
   });
+  scene.stop_if_cancelled();
   double total = 0, solid = 0;
   for (int y = 0; y < height; ++y) {
     const double c = std::cos(kPi * ((y + 0.5) / height - 0.5));

@@ -13,15 +13,28 @@ namespace opal {
 namespace {
 
 constexpr size_t kMaxCasters = 64;
+// Instances or triangles that are built before it is asked again whether to stop.
+constexpr size_t kBetweenChecks = 4096;
 
 void check(const EmbreeApi &embree, RTCDevice device, const char *what) {
   if (const int error = embree.device_error(device)) {
-    if (error == 4) throw std::bad_alloc();
+    if (error == kRtcErrorOutOfMemory) throw std::bad_alloc();
+    if (error == kRtcErrorCancelled) throw CommitCancelled("Cancelled");
     throw EmbreeError(std::string("Embree failed with error ") + std::to_string(error) + " while " + what);
   }
 }
 
-void build_mesh(const EmbreeApi &embree, RTCDevice device, Mesh &mesh) {
+// Builds Embree's tree, and asks while it does whether to stop.
+void commit_embree(const Scene &scene, RTCScene tree, const char *what) {
+  const auto goes_on = [](void *user, double) { return !static_cast<const Scene *>(user)->commit_cancelled.load(); };
+  scene.embree.set_progress_monitor(tree, goes_on, const_cast<Scene *>(&scene));
+  scene.embree.commit_scene(tree);
+  check(scene.embree, scene.device, what);
+}
+
+void build_mesh(const Scene &scene, Mesh &mesh) {
+  const EmbreeApi &embree = scene.embree;
+  const RTCDevice device = scene.device;
   if (mesh.embree) embree.release_scene(mesh.embree);
   mesh.embree = embree.new_scene(device);
   embree.set_scene_flags(mesh.embree, kRtcSceneRobust);
@@ -40,8 +53,7 @@ void build_mesh(const EmbreeApi &embree, RTCDevice device, Mesh &mesh) {
     embree.attach_by_id(mesh.embree, geometry, 0);
     embree.release_geometry(geometry);
   }
-  embree.commit_scene(mesh.embree);
-  check(embree, device, "building a mesh");
+  commit_embree(scene, mesh.embree, "building a mesh");
   mesh.dirty = false;
 }
 
@@ -51,6 +63,7 @@ void build_top(Scene &scene) {
   scene.top = embree.new_scene(scene.device);
   embree.set_scene_flags(scene.top, kRtcSceneRobust);
   for (size_t i = 0; i < scene.instances.size(); ++i) {
+    if (i % kBetweenChecks == 0) scene.stop_if_cancelled();
     const Instance &instance = scene.instances[i];
     const Mesh &mesh = *scene.meshes[instance.mesh];
     // A singular transform flattens the object to nothing that a ray could hit from both sides of Embree's inverse.
@@ -69,8 +82,7 @@ void build_top(Scene &scene) {
     embree.attach_by_id(scene.top, geometry, unsigned(i));
     embree.release_geometry(geometry);
   }
-  embree.commit_scene(scene.top);
-  check(embree, scene.device, "building the scene");
+  commit_embree(scene, scene.top, "building the scene");
 }
 
 Bounds world_bounds(const Bounds &local, const Instance &instance) {
@@ -144,6 +156,7 @@ bool uses(const Scene &scene, const Instance &instance, uint32_t flag) {
 void collect_casters(Scene &scene) {
   std::vector<EmissionTarget> all;
   for (const Instance &instance : scene.instances) {
+    scene.stop_if_cancelled();
     const Mesh &mesh = *scene.meshes[instance.mesh];
     if (mesh.n_triangles() > 0 && uses(scene, instance, OPAL_MATERIAL_CASTER)) all.push_back(bounding_sphere(mesh, instance));
   }
@@ -189,11 +202,13 @@ void find_touching(Scene &scene) {
   const bool all = gems.size() * scene.instances.size() > kMostPairs;
   if (all)
     for (Instance &instance : scene.instances) instance.touching = true;
-  for (size_t g = 0; !all && g < gems.size(); ++g)
+  for (size_t g = 0; !all && g < gems.size(); ++g) {
+    scene.stop_if_cancelled();
     for (uint32_t i = 0; i < scene.instances.size(); ++i) {
       const uint32_t gem = gems[g];
       if (i != gem && overlap(bounds[gem], bounds[i])) scene.instances[gem].touching = scene.instances[i].touching = true;
     }
+  }
   scene.any_touching =
       std::any_of(scene.instances.begin(), scene.instances.end(), [](const Instance &i) { return i.touching; });
 }
@@ -205,6 +220,7 @@ void collect_emissive(Scene &scene) {
     if (!uses(scene, instance, OPAL_MATERIAL_EMISSIVE)) continue;
     const Mesh &mesh = *scene.meshes[instance.mesh];
     for (uint32_t t = 0; t < uint32_t(mesh.n_triangles()); ++t) {
+      if (t % kBetweenChecks == 0) scene.stop_if_cancelled();
       const uint32_t m = scene.material_index(i, t);
       const Material &material = scene.materials[m];
       if (!(material.flags & OPAL_MATERIAL_EMISSIVE)) continue;
@@ -254,11 +270,17 @@ int Scene::find_emissive(uint32_t instance, uint32_t triangle) const {
 
 void Scene::commit() {
   const Stopwatch start;
+  // A stop is for one commit: the next one builds what this one leaves.
+  struct Rearm {
+    std::atomic<bool> &flag;
+    ~Rearm() { flag = false; }
+  } const rearm{commit_cancelled};
+  stop_if_cancelled();
   if (materials.empty()) materials.emplace_back();
   if (geometry_dirty)
     for (const auto &mesh : meshes)
       if (mesh->dirty) {
-        build_mesh(embree, device, *mesh);
+        build_mesh(*this, *mesh);
         ++mesh_builds;
       }
   if (geometry_dirty || instances_dirty || !top) {

@@ -51,6 +51,7 @@ void EmbreeApi::open(const char *path) {
   bind(set_scene_flags, library, "rtcSetSceneFlags");
   bind(set_scene_quality, library, "rtcSetSceneBuildQuality");
   bind(commit_scene, library, "rtcCommitScene");
+  bind(set_progress_monitor, library, "rtcSetSceneProgressMonitorFunction");
   bind(attach_by_id, library, "rtcAttachGeometryByID");
   bind(detach, library, "rtcDetachGeometry");
   bind(get_geometry, library, "rtcGetGeometry");

@@ -25,6 +25,7 @@ enum : int { kRtcFormatUint3 = 0x5003, kRtcFormatFloat3 = 0x9003, kRtcFormatFloa
 enum : int { kRtcQualityLow = 0, kRtcQualityMedium = 1, kRtcQualityHigh = 2 };
 enum : int { kRtcSceneDynamic = 1, kRtcSceneRobust = 4 };
 enum : int { kRtcPropertyVersion = 0, kRtcPropertyRayMask = 64 };
+enum : int { kRtcErrorOutOfMemory = 4, kRtcErrorCancelled = 6 };
 inline constexpr unsigned kRtcInvalid = ~0u;
 
 struct alignas(16) RTCRayHit {
@@ -85,6 +86,8 @@ struct EmbreeApi {
   void (*set_scene_flags)(RTCScene, int) = nullptr;
   void (*set_scene_quality)(RTCScene, int) = nullptr;
   void (*commit_scene)(RTCScene) = nullptr;
+  // Called by any of the building threads with the part that is done; false ends the build.
+  void (*set_progress_monitor)(RTCScene, bool (*)(void *user, double done), void *user) = nullptr;
   void (*attach_by_id)(RTCScene, RTCGeometry, unsigned) = nullptr;
   void (*detach)(RTCScene, unsigned) = nullptr;
   RTCGeometry (*get_geometry)(RTCScene, unsigned) = nullptr;

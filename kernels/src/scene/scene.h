@@ -10,11 +10,18 @@
 #include "scene/embree_api.h"
 #include "shader/shader.h"
 
+#include <atomic>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace opal {
+
+// A stop was asked for while commit() built.
+struct CommitCancelled : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 struct Image {
   int width = 0, height = 0, channels = 4;
@@ -150,8 +157,14 @@ struct Scene {
   int find_emissive(uint32_t instance, uint32_t triangle) const;
   int64_t memory_bytes() const;
 
-  // Building (scene/build.cpp). Throws std::bad_alloc or EmbreeError.
+  // Building (scene/build.cpp). Throws std::bad_alloc, EmbreeError or CommitCancelled; the next builds the rest.
   void commit();
+  // Ends the commit that runs, or else the next; from any thread.
+  void cancel_commit() { commit_cancelled = true; }
+  void stop_if_cancelled() const {
+    if (commit_cancelled.load(std::memory_order_relaxed)) throw CommitCancelled("Cancelled");
+  }
+  std::atomic<bool> commit_cancelled{false};
   // Restricts the wavelengths that paths sample; light tables do not depend on it.
   void set_wavelengths(float first, float last);
 
