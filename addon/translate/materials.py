@@ -20,6 +20,9 @@ from . import rainbow
 from .spectra import Spectra
 from .volumes import Body, Volumes
 
+# The setting that fills a body, by the material's kind; of any other kind it is the Volume socket.
+_FILLED_BY = {"GEM": "Clouded", "MEDIUM": "Medium", "RAINBOW": "Rainbow"}
+
 
 class NeedsRebuild(Exception):
     """A change that cannot be made in a scene that stands; it has to be built anew."""
@@ -134,7 +137,10 @@ class Materials:
             return self._default_volume(body) if is_volume else self._program(compile_missing(self._context), known)
         settings = material.opal
         if body is not None and not body.closed:
-            self._report.add(body.name, "The mesh is open, so it cannot hold a medium; only its surface is rendered.", lost=True)
+            sentence = (
+                f"the mesh is open, so the material “{material.name}” has nothing to fill; only its surface is rendered. Close its holes."
+            )
+            self._report.add(body.name, sentence, _FILLED_BY.get(settings.kind, "Volume"), lost=True)
             body = None
             if settings.kind != "GEM":
                 return self._program(compile_material(material, self._context), known)

@@ -180,7 +180,8 @@ class SceneBuilder:
         """What a group's materials fill, where any of them fills; `None` for surfaces alone."""
         mesh, transform = group.mesh, group.transforms[0]
         if not hasattr(mesh, "polygons"):
-            return Body(group.name, group.grids, None, transform, mesh.as_pointer(), is_volume=True)
+            key = (mesh.as_pointer(), group.density)
+            return Body(group.name, group.grids, None, transform, key, is_volume=True, density=group.density)
         if not any(fills(m) for m in group.materials):
             return None
         box = box_of(mesh) if len(mesh.vertices) else (np.zeros(3), np.zeros(3))
@@ -201,7 +202,8 @@ class SceneBuilder:
         key = group.mesh.as_pointer()
         if body is not None and body.is_volume:
             box = body.bounds()
-            snapshot.meshes.setdefault(key, box_mesh(*box) if box is not None else None)
+            if snapshot.meshes.get(key) is None:
+                snapshot.meshes[key] = box_mesh(*box) if box is not None else None
         elif key not in snapshot.meshes:
             arrays = snapshot.meshes[key] = read_mesh(group.mesh, needs, lambda: self._stage(self._reading))
             for sentence in arrays.problems if arrays is not None else ():

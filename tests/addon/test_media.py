@@ -118,7 +118,25 @@ def test_a_volume_object_moves_and_grows_with_its_object(tmp_path):
     obj.data.materials.append(absorbing(1.0, density="GRID"))
     obj.scale = (1, 1, 0.5)
     obj.location = (0.1, 0, 1)
+    obj.data.render.space = "WORLD"
     assert mean(tmp_path) == pytest.approx(math.exp(-0.5 - 0.0625), abs=0.025)
+    obj.data.render.space = "OBJECT"  # as dense as in object space, by the mean scale
+    assert mean(tmp_path) == pytest.approx(math.exp((-0.5 - 0.0625) / math.sqrt(0.75)), abs=0.025)
+
+
+def test_copies_of_a_volume_object_are_as_dense_as_their_own_scale_says(tmp_path):
+    """Two of one datablock side by side, of scale 1 and 0.4: as opaque, where the render space is Object."""
+    before_the_sky()
+    obj = cloud(tmp_path, np.full((9, 9, 9), 0.5))
+    obj.data.materials.append(absorbing(1.0, density="GRID"))
+    small = stage.link("Small", obj.data, (2, 0, 0))
+    small.scale = (0.4, 0.4, 0.4)
+    for space, depth in (("OBJECT", 1.125), ("WORLD", 0.4 * 1.125)):
+        obj.data.render.space = space
+        bpy.context.scene.camera.location.x = 0
+        assert mean(tmp_path) == pytest.approx(math.exp(-1.125), abs=0.025), space
+        bpy.context.scene.camera.location.x, bpy.context.scene.camera.data.ortho_scale = 2, 0.3
+        assert mean(tmp_path) == pytest.approx(math.exp(-depth), abs=0.025), space
 
 
 def test_a_sequence_shows_each_frame_its_own_file(tmp_path):
@@ -205,7 +223,29 @@ def test_an_open_mesh_is_a_surface_and_is_said(tmp_path):
     before_the_sky()
     stage.mesh("Box", CORNERS, FACES[:-1], material=absorbing(5.0))
     stage.render(tmp_path)
-    assert said("Box") and said("open"), stage.problems()
+    assert said("Box: Medium: the mesh is open"), stage.problems()
+
+
+@pytest.mark.parametrize(
+    "where, name, sentence",
+    [
+        ("volume", "", "Cloud: Grid: no grid is named"),
+        ("mesh", "density", "Box: Grid: there are no grids in what is neither"),
+        ("world", "density", "World: Grid: there are no grids in what is neither"),
+    ],
+)
+def test_a_density_by_grid_without_grids_says_so(tmp_path, where, name, sentence):
+    scene = before_the_sky()
+    material = absorbing(1.0, density="GRID", grid=name)
+    if where == "volume":
+        cloud(tmp_path, np.ones((9, 9, 9))).data.materials.append(material)
+    elif where == "mesh":
+        stage.mesh("Box", CORNERS, FACES, material=material)
+    else:
+        scene.world.opal.kind, scene.world.opal.scale_height = "MEDIUM", 0.0
+        scene.world.opal.medium.density = "GRID"
+    assert mean(tmp_path) == pytest.approx(1, abs=0.01)
+    assert said(sentence), stage.problems()
 
 
 def test_no_extinction_is_clear(tmp_path):
