@@ -288,6 +288,22 @@ def test_haze_of_the_world_thins_with_height(tmp_path):
     assert not stage.problems()
 
 
+def test_haze_chosen_for_a_world_lets_half_of_the_sky_through_from_overhead(tmp_path):
+    scene = before_the_sky()
+    scene.world.opal.kind = "MEDIUM"
+    scene.world.opal.medium.albedo = (0, 0, 0)
+    bpy.context.scene.camera.rotation_euler = (math.pi, 0, 0)
+    assert mean(tmp_path) == pytest.approx(math.exp(-0.5), abs=0.025)
+    assert not stage.problems()
+
+
+def test_a_worlds_own_numbers_stay_when_haze_is_chosen():
+    world = stage.world().opal
+    world.scale_height, world.medium.extinction = 20.0, 0.03
+    world.kind = "MEDIUM"
+    assert (world.scale_height, world.medium.extinction) == pytest.approx((20.0, 0.03))
+
+
 def test_fog_without_end_says_that_it_hides_the_sky(tmp_path):
     scene = before_the_sky()
     scene.world.opal.kind, scene.world.opal.scale_height = "MEDIUM", 0.0
