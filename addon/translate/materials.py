@@ -248,6 +248,12 @@ def fills(material: Any) -> bool:
     return settings.kind in {"MEDIUM", "RAINBOW"} or has_volume(material)
 
 
+def bounds_a_medium(material: Any) -> bool:
+    """Whether a material fills what it covers and has no surface."""
+    kind = material.opal.kind
+    return kind in {"MEDIUM", "RAINBOW"} or (kind == "SURFACE" and has_volume(material) and not has_surface(material))
+
+
 def gem_spectra(gem: Any) -> tuple[Any, Any]:
     """n and σa (1/m, or None) at 360 ... 830 nm of a gem: the species' own tables, or what its numbers say."""
     name = presets.species_of(gem)

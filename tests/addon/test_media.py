@@ -226,6 +226,30 @@ def test_an_open_mesh_is_a_surface_and_is_said(tmp_path):
     assert said("Box: Medium: the mesh is open"), stage.problems()
 
 
+def test_a_body_turned_inside_out_is_turned_back_and_said(tmp_path):
+    """Of two boxes in one mesh the one that is looked through is inside out; then media by nodes, then both boxes."""
+    before_the_sky()
+    apart = [(x + 4, y, z) for x, y, z in CORNERS]
+    inward = [face[::-1] for face in FACES]
+    nodes = stage.node_material("Nodes", "VolumeAbsorption", Color=(0, 0, 0, 1), Density=0.5)
+    tree = nodes.node_tree
+    shader, output = (next(n for n in tree.nodes if n.type == kind) for kind in ("VOLUME_ABSORPTION", "OUTPUT_MATERIAL"))
+    tree.links.new(shader.outputs[0], output.inputs["Volume"])
+    tree.links.remove(output.inputs["Surface"].links[0])
+    for material, other, sentence in (
+        (absorbing(0.5), FACES, "Boxes: the normals of 1 of the mesh's 2 media are flipped"),
+        (nodes, inward, "Boxes: the normals of 2 of the mesh's 2 media are flipped"),
+    ):
+        faces = inward + [tuple(corner + 8 for corner in face) for face in other]
+        obj = stage.mesh("Boxes", CORNERS + apart, faces, material=material)
+        assert mean(tmp_path) == pytest.approx(math.exp(-1), abs=0.025), material.name
+        assert said(sentence), stage.problems()
+        bpy.data.objects.remove(obj)
+    stage.mesh("Fine", CORNERS, FACES, material=nodes)
+    assert mean(tmp_path) == pytest.approx(math.exp(-1), abs=0.025)
+    assert not stage.problems()
+
+
 @pytest.mark.parametrize(
     "where, name, sentence",
     [
