@@ -256,6 +256,7 @@ def _structure(groups: list[Group], meshes: list[int]) -> tuple:
             group.grids.key if group.grids is not None else 0,
             group.rows.tobytes(),
             group.object_info.tobytes(),
+            group.density,
         )
         for group, mesh in zip(groups, meshes, strict=True)
     )

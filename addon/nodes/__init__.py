@@ -7,9 +7,10 @@ One reader a node, in files by subject: `shaders`, `textures`, `converters`, `ve
 
 from .compile import compile_light_nodes, compile_material, compile_missing, compile_world
 from .context import CompiledProgram, NodeContext, Problem
-from .volumes import CompiledVolume, compile_volume, default_volume, has_surface, has_volume
+from .volumes import Coefficient, CompiledVolume, compile_volume, default_volume, has_surface, has_volume
 
 __all__ = [
+    "Coefficient",
     "CompiledProgram",
     "CompiledVolume",
     "NodeContext",

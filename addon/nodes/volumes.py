@@ -2,7 +2,7 @@
 """The Volume socket of a material or a world: what its shader nodes take away, scatter and add, as programs or constants.
 
 Formulas are those of Cycles' volume closures. Every shader gives terms ``colour x factor`` for scattering, absorption and emission;
-`compile_volume` sums them. What is the same everywhere stays constant; a term times one grid keeps the grid's name; only what is
+`compile_volume` sums them, what scatters by phase function: each keeps its own colour and its own places. What is the same everywhere stays constant; a term times one grid keeps the grid's name; only what is
 computed from place to place becomes a program, which the kernels run at the voxels of a grid.
 """
 
@@ -49,16 +49,28 @@ class Blackbody:
 
 
 @dataclass
-class CompiledVolume:
-    """A volume: coefficients in linear Rec.709 and 1/m (emission: radiance per metre), and its phase functions by weight."""
+class Lobe:
+    """What is scattered by one phase function."""
 
-    scattering: Coefficient = field(default_factory=Coefficient)
+    phase: Phase
+    coefficient: Coefficient
+
+
+@dataclass
+class CompiledVolume:
+    """A volume: coefficients in linear Rec.709 and 1/m (emission: radiance per metre)."""
+
+    scattering: list[Lobe] = field(default_factory=list)
     absorption: Coefficient = field(default_factory=Coefficient)
     emission: Coefficient = field(default_factory=Coefficient)
     blackbodies: list[Blackbody] = field(default_factory=list)
-    phases: list[tuple[float, Phase]] = field(default_factory=list)
     grids: dict[str, int] = field(default_factory=dict)  # attributes that programs read, by name
     problems: list[Problem] = field(default_factory=list)
+
+    @property
+    def coefficients(self) -> list[Coefficient]:
+        """All that is not nothing."""
+        return [c for c in (*(lobe.coefficient for lobe in self.scattering), self.absorption, self.emission) if c.present]
 
 
 @dataclass
@@ -66,10 +78,9 @@ class _Terms:
     """What the shader nodes of one volume have given so far."""
 
     grids: Collection[str] | None  # names that exist; None: the body has no grids
-    scattering: list[tuple[Value, Value]] = field(default_factory=list)
+    scattering: list[tuple[Phase, list[tuple[Value, Value]]]] = field(default_factory=list)
     absorption: list[tuple[Value, Value]] = field(default_factory=list)
     emission: list[tuple[Value, Value]] = field(default_factory=list)
-    phases: list[tuple[float, Phase]] = field(default_factory=list)
     blackbodies: list[Blackbody] = field(default_factory=list)
 
 
@@ -116,10 +127,12 @@ def compile_volume(owner: Any, context: NodeContext, grids: Collection[str] | No
     terms = _Terms(grids)
     readers = {kind: _with(terms, reader) for kind, reader in _READERS.items()}
     compiler.shade(Frame(owner.node_tree), socket, readers, "it is left out of the volume")
-    volume = CompiledVolume(phases=terms.phases, blackbodies=terms.blackbodies, problems=compiler.problems)
+    volume = CompiledVolume(blackbodies=terms.blackbodies, problems=compiler.problems)
     numbers: dict[int, str] = {}
-    for kind in ("scattering", "absorption", "emission"):
-        setattr(volume, kind, _coefficient(compiler, getattr(terms, kind), numbers))
+    lobes = [Lobe(phase, _coefficient(compiler, of_phase, numbers)) for phase, of_phase in terms.scattering]
+    volume.scattering = [lobe for lobe in lobes if lobe.coefficient.present]
+    volume.absorption = _coefficient(compiler, terms.absorption, numbers)
+    volume.emission = _coefficient(compiler, terms.emission, numbers)
     volume.grids = {name: number for number, name in numbers.items()}
     return volume
 
@@ -127,7 +140,7 @@ def compile_volume(owner: Any, context: NodeContext, grids: Collection[str] | No
 def default_volume() -> CompiledVolume:
     """What a volume object without a material shows: a new Principled Volume node."""
     half = Coefficient((0.5, 0.5, 0.5), "density")
-    return CompiledVolume(scattering=half, absorption=Coefficient(half.constant, "density"), phases=[(1.0, Phase())])
+    return CompiledVolume(scattering=[Lobe(Phase(), half)], absorption=Coefficient(half.constant, "density"))
 
 
 def _with(terms: _Terms, reader: Callable) -> Callable[[NodeView, Value], None]:
@@ -206,17 +219,26 @@ def _phase(n: NodeView, kind: str) -> Phase:
     return Phase(PhaseKind.TABLE, wavelengths=[550.0], angles=angles, values=np.maximum(values, 0.0)[None])
 
 
-def _note_phase(terms: _Terms, phase: Phase, color: Value, factor: Value) -> None:
-    amount = sum(color.constant[:3]) / 3 if color.constant is not None else 1.0
-    amount *= factor.number if factor.number is not None else 1.0
-    if amount > 0:
-        terms.phases.append((amount, phase))
+def _add_scattering(terms: _Terms, phase: Phase, color: Value, factor: Value) -> None:
+    """Adds a term to those of the same phase function."""
+    for known, of_phase in terms.scattering:
+        if _same_phase(known, phase):
+            of_phase.append((color, factor))
+            return
+    terms.scattering.append((phase, [(color, factor)]))
+
+
+def _same_phase(a: Phase, b: Phase) -> bool:
+    if a.kind != b.kind:
+        return False
+    if a.kind == PhaseKind.TABLE:
+        return bool((a.values == b.values).all())  # tables of `_phase`: all at the same angles
+    return a.kind != PhaseKind.HENYEY_GREENSTEIN or a.anisotropy == b.anisotropy
 
 
 def _scatter(terms: _Terms, n: NodeView, weight: Value) -> None:
     color, factor = n.value("Color"), n.builder.math("MULTIPLY", weight, _positive(n, n.value("Density")))
-    terms.scattering.append((color, factor))
-    _note_phase(terms, _phase(n, getattr(n.node, "phase", "HENYEY_GREENSTEIN")), color, factor)
+    _add_scattering(terms, _phase(n, getattr(n.node, "phase", "HENYEY_GREENSTEIN")), color, factor)
 
 
 def _absorb(terms: _Terms, n: NodeView, weight: Value) -> None:
@@ -225,11 +247,9 @@ def _absorb(terms: _Terms, n: NodeView, weight: Value) -> None:
 
 
 def _coefficients(terms: _Terms, n: NodeView, weight: Value) -> None:
-    scattering = n.value("Scatter Coefficients")
-    terms.scattering.append((scattering, weight))
+    _add_scattering(terms, _phase(n, n.node.phase), n.value("Scatter Coefficients"), weight)
     terms.absorption.append((n.value("Absorption Coefficients"), weight))
     terms.emission.append((n.value("Emission Coefficients"), weight))
-    _note_phase(terms, _phase(n, n.node.phase), scattering, weight)
 
 
 def _emit(terms: _Terms, n: NodeView, weight: Value) -> None:
@@ -266,7 +286,7 @@ def _principled(terms: _Terms, n: NodeView, weight: Value) -> None:
     elif name and terms.grids is not None:
         n.problem(f"There is no grid named “{name}”; the colour is taken alone.")
     factor = math("MULTIPLY", weight, density)
-    terms.scattering.append((color, factor))
+    _add_scattering(terms, _phase(n, "HENYEY_GREENSTEIN"), color, factor)
     dark = n.value("Absorption Color")
     if dark.constant is not None:
         root = constant(*(max(0.0, c) ** 0.5 for c in dark.constant[:3]))
@@ -275,7 +295,6 @@ def _principled(terms: _Terms, n: NodeView, weight: Value) -> None:
         root = n.emit(Op.COMBINE, ops.COLOR["RGB"], *lanes)
     absorbed = n.emit(Op.VECTOR_MATH, ops.VECTOR_MATH["MULTIPLY"], _rest(n, color), _rest(n, root))
     terms.absorption.append((absorbed, factor))
-    _note_phase(terms, _phase(n, "HENYEY_GREENSTEIN"), n.value("Color"), weight)
     strength = _positive(n, n.value("Emission Strength"))
     if strength.number != 0:
         terms.emission.append((n.value("Emission Color"), math("MULTIPLY", weight, strength)))

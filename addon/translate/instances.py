@@ -3,7 +3,8 @@
 
 Blender lists objects and instances alike as `object_instances`. Their matrices and random numbers are read for all at
 once by `foreach_get`; the loop over instances looks only at which object and which mesh each one shows, and everything
-else is read once a group. Copies with the same mesh, materials and visibility make one group.
+else is read once a group. Copies with the same mesh, materials and visibility make one group; those of volume objects that keep their look at any
+scale only where they are scaled alike.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 
 from ..finiteness import misplaced_by
 from ..identity import Named
-from .voxels import source_of
+from .voxels import density_by_scale, source_of
 
 # Ray visibility of an object: property, OPAL_RAY_* bit.
 _VISIBILITY = (
@@ -48,6 +49,8 @@ class Group:
         (count, 3, 4) float32, object to world.
     object_info : ndarray
         (count, 8) float32 as in `opal_instances_desc`.
+    density : float
+        What the coefficients of a volume are multiplied by.
     """
 
     name: str
@@ -61,6 +64,7 @@ class Group:
     object_info: np.ndarray
     transforms_end: np.ndarray | None = None  # at shutter close
     grids: Any = None
+    density: float = 1.0
 
 
 @dataclass
@@ -86,6 +90,7 @@ class _Look:
     color: tuple[float, ...]
     random: float
     grids: Any = None
+    thins_with_scale: bool = False
 
 
 def collect(
@@ -202,6 +207,7 @@ class _LayerContext:
             color=tuple(obj.color),
             random=object_random(original.name),
             grids=grids,
+            thins_with_scale=obj.type == "VOLUME" and mesh.render.space == "OBJECT",
         )
 
     def _materials(self, obj: Any, source: Any, mesh: Any) -> tuple[Any, ...]:
@@ -264,20 +270,24 @@ def _group(
         info = per_look[look_rows[mine]]
         copies = random_ids[mine] != 0
         info[copies, 0] = random_ids[mine][copies].view(np.uint32).astype(np.float64) / 0xFFFFFFFF
-        visible.groups.append(
-            Group(
-                name=look.name,
-                mesh=look.mesh,
-                materials=look.materials,
-                visibility=look.visibility,
-                holdout=look.holdout,
-                receiver_set=look.receiver_set,
-                rows=mine,
-                transforms=np.ascontiguousarray(matrices[mine, :3]),
-                object_info=info,
-                grids=look.grids,
+        densities = density_by_scale(matrices[mine]) if look.thins_with_scale else np.ones(len(mine))
+        for density in np.unique(densities):
+            alike = densities == density
+            visible.groups.append(
+                Group(
+                    name=look.name,
+                    mesh=look.mesh,
+                    materials=look.materials,
+                    visibility=look.visibility,
+                    holdout=look.holdout,
+                    receiver_set=look.receiver_set,
+                    rows=mine[alike],
+                    transforms=np.ascontiguousarray(matrices[mine[alike], :3]),
+                    object_info=info[alike],
+                    grids=look.grids,
+                    density=float(density),
+                )
             )
-        )
 
 
 def object_random(name: str) -> float:

@@ -20,6 +20,9 @@ from . import rainbow
 from .spectra import Spectra
 from .volumes import Body, Volumes
 
+# The setting that fills a body, by the material's kind; of any other kind it is the Volume socket.
+_FILLED_BY = {"GEM": "Clouded", "MEDIUM": "Medium", "RAINBOW": "Rainbow"}
+
 
 class NeedsRebuild(Exception):
     """A change that cannot be made in a scene that stands; it has to be built anew."""
@@ -134,7 +137,10 @@ class Materials:
             return self._default_volume(body) if is_volume else self._program(compile_missing(self._context), known)
         settings = material.opal
         if body is not None and not body.closed:
-            self._report.add(body.name, "The mesh is open, so it cannot hold a medium; only its surface is rendered.", lost=True)
+            sentence = (
+                f"the mesh is open, so the material “{material.name}” has nothing to fill; only its surface is rendered. Close its holes."
+            )
+            self._report.add(body.name, sentence, _FILLED_BY.get(settings.kind, "Volume"), lost=True)
             body = None
             if settings.kind != "GEM":
                 return self._program(compile_material(material, self._context), known)
@@ -240,6 +246,12 @@ def fills(material: Any) -> bool:
     if settings.kind == "GEM":
         return settings.use_medium
     return settings.kind in {"MEDIUM", "RAINBOW"} or has_volume(material)
+
+
+def bounds_a_medium(material: Any) -> bool:
+    """Whether a material fills what it covers and has no surface."""
+    kind = material.opal.kind
+    return kind in {"MEDIUM", "RAINBOW"} or (kind == "SURFACE" and has_volume(material) and not has_surface(material))
 
 
 def gem_spectra(gem: Any) -> tuple[Any, Any]:

@@ -21,7 +21,7 @@ from ..report import Report
 from .gem_meshes import mend_gem_mesh
 from .instances import Group, Visible, collect
 from .lights import LightLinks, light_from_object, out_of_range
-from .materials import Materials, fills
+from .materials import Materials, bounds_a_medium, fills
 from .meshes import MeshArrays, MeshNeeds, box_mesh, box_of, is_closed, read_mesh
 from .node_context import NodeContext
 from .rainbow import Rain
@@ -180,7 +180,8 @@ class SceneBuilder:
         """What a group's materials fill, where any of them fills; `None` for surfaces alone."""
         mesh, transform = group.mesh, group.transforms[0]
         if not hasattr(mesh, "polygons"):
-            return Body(group.name, group.grids, None, transform, mesh.as_pointer(), is_volume=True)
+            key = (mesh.as_pointer(), group.density)
+            return Body(group.name, group.grids, None, transform, key, is_volume=True, density=group.density)
         if not any(fills(m) for m in group.materials):
             return None
         box = box_of(mesh) if len(mesh.vertices) else (np.zeros(3), np.zeros(3))
@@ -201,17 +202,25 @@ class SceneBuilder:
         key = group.mesh.as_pointer()
         if body is not None and body.is_volume:
             box = body.bounds()
-            snapshot.meshes.setdefault(key, box_mesh(*box) if box is not None else None)
+            if snapshot.meshes.get(key) is None:
+                snapshot.meshes[key] = box_mesh(*box) if box is not None else None
         elif key not in snapshot.meshes:
             arrays = snapshot.meshes[key] = read_mesh(group.mesh, needs, lambda: self._stage(self._reading))
             for sentence in arrays.problems if arrays is not None else ():
                 self._report.add(group.name, sentence, lost=True)
-            gems = [key_of(m) if m is not None and m.opal.kind == "GEM" else None for m in group.materials]
-            if arrays is not None and any(gem is not None for gem in gems):
-                for sentence in mend_gem_mesh(arrays, [NO_GEM if gem is None else gems.index(gem) for gem in gems]):
-                    self._report.add(group.name, sentence)
+            if arrays is not None:
+                self._mend(arrays, group, "gem", lambda m: m.opal.kind == "GEM")
+                if body is not None and body.closed:
+                    self._mend(arrays, group, "medium", bounds_a_medium)
         group.mesh = None
         return key
+
+    def _mend(self, arrays: MeshArrays, group: Group, what: str, is_one: Callable[[Any], bool]) -> None:
+        """Turns the faces of the group's gems or media outwards where they look inwards, and says so."""
+        mine = [key_of(m) if m is not None and is_one(m) else None for m in group.materials]
+        if any(one is not None for one in mine):
+            for sentence in mend_gem_mesh(arrays, [NO_GEM if one is None else mine.index(one) for one in mine], what):
+                self._report.add(group.name, sentence)
 
     def read_end(self, depsgraph: Any, snapshot: Snapshot) -> None:
         """Reads once more what moves or deforms, at the end of the shutter; what cannot be matched stands still."""

@@ -10,10 +10,9 @@ import numpy as np
 from opal_kernels import binding
 from opal_kernels.descriptions import Attribute, Density, EmissionDensity, Medium, MediumLayer, Phase, PhaseKind
 from opal_kernels.optics import colour, illuminants, uplift
-from opal_kernels.optics import phase_functions as phases
 from opal_kernels.scene import Scene
 
-from ..nodes import CompiledVolume
+from ..nodes import Coefficient, CompiledVolume
 from .voxels import Source, Voxels
 
 # Voxels along the longest side of a mesh whose medium is computed by nodes.
@@ -35,12 +34,14 @@ class Body:
         Corners of the mesh in object space.
     transform : ndarray
         (3, 4) or (4, 4), object to world, of its first copy.
-    key : int
+    key : hashable
         The same for bodies that are alike.
     closed : bool
         Whether there is an inside.
     is_volume : bool
         It is a volume object, which has no surface.
+    density : float
+        What its coefficients are multiplied by: see `voxels.density_by_scale`.
     """
 
     def __init__(
@@ -49,12 +50,13 @@ class Body:
         source: Source | None = None,
         box: Any = None,
         transform: Any = None,
-        key: int = 0,
+        key: Any = 0,
         closed: bool = True,
         is_volume: bool = False,
+        density: float = 1.0,
     ) -> None:
         self.name, self.source, self.box, self.key = name, source, box, key
-        self.closed, self.is_volume = closed, is_volume
+        self.closed, self.is_volume, self.density = closed, is_volume, density
         self.transform = np.eye(4)[:3] if transform is None else np.asarray(transform, float)[:3]
         self.used: list[Voxels] = []  # grids that a medium was made of
 
@@ -77,10 +79,10 @@ class Volumes:
     ----------
     scene : Scene
     problem : callable
-        Takes a name and a sentence.
+        `Report.add`.
     """
 
-    def __init__(self, scene: Scene, problem: Callable[[str, str], None]) -> None:
+    def __init__(self, scene: Scene, problem: Callable[..., None]) -> None:
         self._scene, self._problem = scene, problem
         self._grids: dict[tuple[int, str, bool], int] = {}
 
@@ -97,18 +99,28 @@ class Volumes:
             self._problem(name, f"{negative} voxels are negative and are taken as empty")
         return 1 + grid
 
-    def _missing(self, body: Body, name: str) -> None:
+    def _missing(self, body: Body, name: str, part: str = "") -> None:
         """Names a grid that is not there; one that could not be read has said so itself."""
-        if body.source is None or name not in body.source.names:
-            self._problem(body.name, f"There is no grid named “{name}”; it is rendered as nothing.")
+        if body.source is None:
+            text = "there are no grids in what is neither a volume object nor a smoke domain; it is rendered as nothing."
+        elif not name:
+            text = "no grid is named; it is rendered as nothing."
+        elif name not in body.source.names:
+            text = f"there is no grid named “{name}”; it is rendered as nothing."
+        else:
+            return
+        self._problem(body.name, text, part, lost=True)
 
-    def _density(self, body: Body, name: str) -> int:
-        """1 + number of a grid of the body with one channel; 0, with a sentence, where it has none of that name."""
+    def _density(self, body: Body, name: str, part: str = "") -> int:
+        """1 + number of a grid of the body with one channel; 0, with a sentence, where it has none of that name.
+
+        `part` is the setting that names it.
+        """
         key = (body.source.key if body.source is not None else 0, name, False)
         if key not in self._grids:
             voxels = body.read(name)
             if voxels is None:
-                self._missing(body, name)
+                self._missing(body, name, part)
                 self._grids[key] = 0
             else:
                 body.used.append(voxels)
@@ -132,73 +144,94 @@ class Volumes:
                 **fields,
             }
         elif settings.density == "GRID":
-            grid = self._density(body, settings.grid)
+            grid = self._density(body, settings.grid, "Grid")
             if not grid:
                 return -1
             fields = {"density": Density.GRID, "density_grid": grid, **fields}
         emission = emission_of(settings)
+        if emission is not None:
+            emission = body.density * emission
         if emission is not None and settings.emission_grid:
-            grid = self._density(body, settings.emission_grid)
+            grid = self._density(body, settings.emission_grid, "Emission Grid")
             emission = emission if grid else None
             fields |= {"emission_density": EmissionDensity.GRID, "emission_density_grid": grid} if grid else {}
-        extinction = settings.extinction * uplift.reflectance(tuple(settings.extinction_color))
+        extinction = body.density * settings.extinction * uplift.reflectance(tuple(settings.extinction_color))
         phase = Phase(kind=PhaseKind[settings.phase], anisotropy=settings.anisotropy)
         return self._scene.add_medium(extinction, uplift.reflectance(tuple(settings.albedo)), phase, emission, **fields)
 
     # ---- Node trees ----
 
     def add_compiled(self, volume: CompiledVolume, body: Body) -> int:
-        """Adds a volume that nodes describe; returns the medium's number, -1 where nothing of it is left."""
-        medium = Medium()
-        self._add_coefficients(volume, body, medium)
-        self._add_emission(volume, body, medium)
-        if volume.phases:
-            medium.phase = binding.scene_add_phase(self._scene.handle, mixture(volume.phases))
-        empty = (medium.extinction, medium.emission) == (-1, -1)
-        if empty and not (medium.scattering_grid or medium.absorption_grid or medium.emission_grid):
-            return -1
-        number = binding.scene_add_medium(self._scene.handle, medium)
-        self._scene.set_medium_layer(number, MediumLayer.BASE)  # nodes that Cycles renders as well
+        """Adds a volume that nodes describe; returns the medium's number, -1 where nothing of it is left.
+
+        Every phase function scatters by coefficients of its own, so each makes a medium, and the kernels join them.
+        """
+        number = -1
+        for medium in reversed(self._media(volume, body)):
+            medium.also = 1 + number
+            number = binding.scene_add_medium(self._scene.handle, medium)
+            self._scene.set_medium_layer(number, MediumLayer.BASE)  # nodes that Cycles renders as well
         return number
 
-    def _add_coefficients(self, volume: CompiledVolume, body: Body, medium: Medium) -> None:
-        parts = [c for c in (volume.scattering, volume.absorption) if c.present]
-        if not parts:
-            return
-        if any(c.program is not None for c in parts) or len({c.grid for c in parts}) > 1:
-            lattice = self._lattice(volume, body)
-            for kind in ("scattering", "absorption"):
-                setattr(medium, f"{kind}_grid", self._baked(getattr(volume, kind), volume, body, lattice, kind))
-            return
-        scattering = uplift.reflectance(volume.scattering.constant)
-        extinction = scattering + uplift.reflectance(volume.absorption.constant)
-        if parts[0].grid:
-            medium.density, medium.density_grid = Density.GRID, self._density(body, parts[0].grid)
-            if not medium.density_grid:
-                return
-        medium.extinction = self._scene.add_spectrum(extinction)
-        medium.scattering = self._scene.add_spectrum(scattering)
+    def _media(self, volume: CompiledVolume, body: Body) -> list[Medium]:
+        media = []
+        absorption = volume.absorption
+        for lobe in volume.scattering:
+            with_it = absorption if _in_the_same_places(lobe.coefficient, absorption) else Coefficient()
+            medium = self._medium(volume, body, lobe.coefficient, with_it)
+            if medium is None:
+                continue
+            if with_it.present:
+                absorption = Coefficient()
+            medium.phase = binding.scene_add_phase(self._scene.handle, lobe.phase)
+            media.append(medium)
+        if absorption.present and (medium := self._medium(volume, body, Coefficient(), absorption)) is not None:
+            media.append(medium)
+        glowing = media[0] if media else Medium()
+        if self._add_emission(volume, body, glowing) and not media:
+            media.append(glowing)
+        return media
 
-    def _add_emission(self, volume: CompiledVolume, body: Body, medium: Medium) -> None:
+    def _medium(self, volume: CompiledVolume, body: Body, scattering: Coefficient, absorption: Coefficient) -> Medium | None:
+        """What is scattered and absorbed in the same places; None where that is nothing."""
+        medium = Medium()
+        if any(c.program is not None for c in (scattering, absorption)):
+            lattice = self._lattice(volume, body)
+            medium.scattering_grid = self._baked(scattering, volume, body, lattice, "scattering")
+            medium.absorption_grid = self._baked(absorption, volume, body, lattice, "absorption")
+            return medium
+        if grid := scattering.grid or absorption.grid:
+            medium.density, medium.density_grid = Density.GRID, self._density(body, grid)
+            if not medium.density_grid:
+                return None
+        scattered = body.density * uplift.reflectance(scattering.constant)
+        medium.extinction = self._scene.add_spectrum(scattered + body.density * uplift.reflectance(absorption.constant))
+        if scattering.present:
+            medium.scattering = self._scene.add_spectrum(scattered)
+        return medium
+
+    def _add_emission(self, volume: CompiledVolume, body: Body, medium: Medium) -> bool:
+        """Lets a medium glow; False where there is nothing that does."""
         emission = volume.emission
         if emission.program is not None or any(b.grid for b in volume.blackbodies) or (volume.blackbodies and emission.grid):
             medium.emission_grid = self._baked(emission, volume, body, self._lattice(volume, body), "emission")
-            return
+            return medium.emission_grid != 0
         rgb = np.array(emission.constant) + sum((blackbody_rgb(b, b.temperature) for b in volume.blackbodies), np.zeros(3))
         if not rgb.any():
-            return
+            return False
         medium.emission_density = EmissionDensity.EVERYWHERE
         if emission.grid:
             medium.emission_density = EmissionDensity.GRID
             medium.emission_density_grid = self._density(body, emission.grid)
             if not medium.emission_density_grid:
-                return
-        medium.emission = self._scene.add_spectrum(uplift.emission(rgb))
+                return False
+        medium.emission = self._scene.add_spectrum(body.density * uplift.emission(rgb))
+        return True
 
     def _lattice(self, volume: CompiledVolume, body: Body) -> Voxels:
         """Where nodes are asked: the finest of the body's grids that they read, or a lattice over its box and a voxel more."""
         names = [*volume.grids, *(b.grid for b in volume.blackbodies if b.grid)]
-        names += [c.grid for c in (volume.scattering, volume.absorption, volume.emission) if c.grid]
+        names += [c.grid for c in volume.coefficients if c.grid]
         read = [voxels for name in names if (voxels := body.read(name)) is not None]
         if not read and body.source is not None:
             read = [voxels for name in body.source.names if (voxels := body.read(name)) is not None]
@@ -233,6 +266,7 @@ class Volumes:
             if b.grid and (grid := body.read(b.grid)) is not None:
                 temperature = b.temperature * np.maximum(grid.at(lattice), 0)
             values = values + blackbody_grid(b, temperature)
+        values = body.density * values
         return self.add_voxels(Voxels(np.ascontiguousarray(values, np.float32), lattice.transform), f"{body.name}, {kind}")
 
     def _evaluate(self, program: Any, volume: CompiledVolume, body: Body, lattice: Voxels) -> np.ndarray:
@@ -291,20 +325,6 @@ def blackbody_grid(b: Any, kelvin: np.ndarray) -> np.ndarray:
     return np.stack([np.interp(kelvin, nodes, rows[:, c]) for c in range(3)], -1).astype(np.float32)
 
 
-def mixture(weighted: list[tuple[float, Phase]]) -> Phase:
-    """One phase function for several: itself where they are one, else a table of their mean by scattering."""
-    first = weighted[0][1]
-    if all((p.kind, p.anisotropy) == (first.kind, first.anisotropy) and p.values is first.values for _, p in weighted):
-        return first
-    angles = phases.table_angles()
-    cosine = np.cos(angles)
-    values = sum(weight * _values(phase, angles, cosine) for weight, phase in weighted)
-    return Phase(PhaseKind.TABLE, wavelengths=[550.0], angles=angles, values=(values / sum(w for w, _ in weighted))[None])
-
-
-def _values(phase: Phase, angles: np.ndarray, cosine: np.ndarray) -> np.ndarray:
-    if phase.kind == PhaseKind.TABLE:
-        return np.interp(angles, phase.angles, np.asarray(phase.values)[0])
-    if phase.kind == PhaseKind.RAYLEIGH:
-        return phases.rayleigh(cosine)
-    return phases.henyey_greenstein(cosine, phase.anisotropy if phase.kind == PhaseKind.HENYEY_GREENSTEIN else 0.0)
+def _in_the_same_places(a: Coefficient, b: Coefficient) -> bool:
+    """Whether two coefficients can share a medium: both baked, or both a constant times the same density."""
+    return a.present and b.present and (a.program is None) == (b.program is None) and a.grid == b.grid

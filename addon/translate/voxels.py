@@ -93,6 +93,26 @@ def gas_domain(obj: Any) -> Any:
     return None
 
 
+def density_by_scale(matrices: np.ndarray) -> np.ndarray:
+    """What Blender multiplies the coefficients of a volume object by whose render space is Object: it looks the same at any scale.
+
+    As in Cycles: one over the length of what the unit diagonal becomes, which does not change when the object turns. Meshes and
+    smoke domains are as dense per metre at any scale.
+
+    Parameters
+    ----------
+    matrices : ndarray
+        (n, 3 or 4, 4), object to world.
+
+    Returns
+    -------
+    ndarray
+        (n,), rounded to 1e-4 of itself, so that copies of one scale stay together.
+    """
+    diagonal = np.asarray(matrices, float)[:, :3, :3].sum(axis=2) / np.sqrt(3.0)
+    return np.exp(-np.round(np.log(np.linalg.norm(diagonal, axis=1)), 4))
+
+
 def too_large(size: Any, channels: int = 1) -> str:
     """A sentence where a dense grid of this size does not fit into the free memory; empty where it does."""
     from opal_kernels import memory

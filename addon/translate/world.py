@@ -67,11 +67,11 @@ def add_world_medium(world: Any, scene: Any, context: Any, volumes: Any, report:
     """
     from opal_kernels.descriptions import Density
 
-    from ..nodes import compile_volume
+    from ..nodes import Coefficient, compile_volume
     from .volumes import Body
 
     settings = world.opal
-    body = Body(world.name, box=((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)))
+    body = Body(Named(world), box=((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)))
     if settings.kind == "MEDIUM":
         fields = {}
         if settings.scale_height > 0.0:
@@ -87,18 +87,19 @@ def add_world_medium(world: Any, scene: Any, context: Any, volumes: Any, report:
         if compiled is None:
             return
         context.note(compiled.problems)
-        if any(c.program is not None for c in (compiled.scattering, compiled.absorption, compiled.emission)):
+        if any(c.program is not None for c in compiled.coefficients):
             report.add(
                 Named(world),
                 "The world's volume is the same everywhere in Opal; what varies from place to place is left out.",
                 "Volume",
                 lost=True,
             )
-            for kind in ("scattering", "absorption", "emission"):
+            compiled.scattering = [lobe for lobe in compiled.scattering if lobe.coefficient.program is None]
+            for kind in ("absorption", "emission"):
                 if getattr(compiled, kind).program is not None:
-                    setattr(compiled, kind, type(compiled.scattering)())
+                    setattr(compiled, kind, Coefficient())
         medium = volumes.add_compiled(compiled, body)
-        endless = compiled.scattering.present or compiled.absorption.present
+        endless = bool(compiled.scattering) or compiled.absorption.present
     if medium < 0:
         return
     scene.set_world_medium(medium)

@@ -150,7 +150,7 @@ typedef struct opal_medium_desc {
   uint32_t noise_seed;
   float noise_scale, noise_detail, noise_contrast; /* object space; octaves 0..15; >= 0 */
   float scale_height, base_height;                 /* object space */
-  int32_t reserved;
+  int32_t also; /* 1 + a medium added before that fills the same body, as if two bodies overlapped; 0: none */
 } opal_medium_desc;
 
 OPAL_EXPORT int32_t opal_scene_add_medium(opal_scene *scene, const opal_medium_desc *medium);

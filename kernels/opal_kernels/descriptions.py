@@ -283,6 +283,8 @@ class Medium:
         Of procedural density: lumps of this size in object space, octaves, and how sharply they part.
     scale_height, base_height : float
         Of density that falls with height.
+    also : int
+        1 + a medium that fills the same body with it, with its own coefficients and phase function; 0 is none.
     """
 
     extinction: int = -1
@@ -302,6 +304,7 @@ class Medium:
     noise_contrast: float = 1.0
     scale_height: float = 1.0
     base_height: float = 0.0
+    also: int = 0
 
 
 @dataclass

@@ -62,3 +62,20 @@ def test_a_stone_lies_flat_on_its_facet_and_leans_where_it_is_told():
     assert math.atan2(axis.y, axis.x) == pytest.approx(math.radians(30.0), abs=1e-5)
     # A main slopes 40.75°, so the table of a stone that lies on one leans by as much.
     assert axis.z == pytest.approx(math.cos(math.radians(40.75)), abs=1e-5)
+
+
+def test_the_walls_of_the_fog_box_bleed_into_the_fog(tmp_path):
+    """Of the light from the medium alone the left third is redder, the right third greener; the parts add up to the whole."""
+    box = example("fog_box")
+    scenes = importlib.import_module("_scene")
+    scene = box.build()
+    scenes.use_engine(scene, "OPAL")
+    scene.render.resolution_x, scene.render.resolution_y = 64, 36
+    scene.opal.passes, scene.opal.samples_per_pass, scene.opal.photons_per_pass = 3, 8, 2000
+    bpy.ops.render.render()
+    parts = box.parts(scenes.passes_of_render(scene, tmp_path / "fog.exr"))
+    assert parts["things"] + parts["medium"] == pytest.approx(parts["both"])
+    left, right = (parts["medium"][:, columns].mean(axis=(0, 1)) for columns in (slice(8, 24), slice(40, 56)))
+    assert left.min() > 0.0 and right.min() > 0.0
+    redness = [float(side[0] / side[1]) for side in (left, right)]
+    assert redness[0] > 1.1 and redness[1] < 0.95, redness

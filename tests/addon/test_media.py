@@ -118,7 +118,25 @@ def test_a_volume_object_moves_and_grows_with_its_object(tmp_path):
     obj.data.materials.append(absorbing(1.0, density="GRID"))
     obj.scale = (1, 1, 0.5)
     obj.location = (0.1, 0, 1)
+    obj.data.render.space = "WORLD"
     assert mean(tmp_path) == pytest.approx(math.exp(-0.5 - 0.0625), abs=0.025)
+    obj.data.render.space = "OBJECT"  # as dense as in object space, by the mean scale
+    assert mean(tmp_path) == pytest.approx(math.exp((-0.5 - 0.0625) / math.sqrt(0.75)), abs=0.025)
+
+
+def test_copies_of_a_volume_object_are_as_dense_as_their_own_scale_says(tmp_path):
+    """Two of one datablock side by side, of scale 1 and 0.4: as opaque, where the render space is Object."""
+    before_the_sky()
+    obj = cloud(tmp_path, np.full((9, 9, 9), 0.5))
+    obj.data.materials.append(absorbing(1.0, density="GRID"))
+    small = stage.link("Small", obj.data, (2, 0, 0))
+    small.scale = (0.4, 0.4, 0.4)
+    for space, depth in (("OBJECT", 1.125), ("WORLD", 0.4 * 1.125)):
+        obj.data.render.space = space
+        bpy.context.scene.camera.location.x = 0
+        assert mean(tmp_path) == pytest.approx(math.exp(-1.125), abs=0.025), space
+        bpy.context.scene.camera.location.x, bpy.context.scene.camera.data.ortho_scale = 2, 0.3
+        assert mean(tmp_path) == pytest.approx(math.exp(-depth), abs=0.025), space
 
 
 def test_a_sequence_shows_each_frame_its_own_file(tmp_path):
@@ -205,7 +223,53 @@ def test_an_open_mesh_is_a_surface_and_is_said(tmp_path):
     before_the_sky()
     stage.mesh("Box", CORNERS, FACES[:-1], material=absorbing(5.0))
     stage.render(tmp_path)
-    assert said("Box") and said("open"), stage.problems()
+    assert said("Box: Medium: the mesh is open"), stage.problems()
+
+
+def test_a_body_turned_inside_out_is_turned_back_and_said(tmp_path):
+    """Of two boxes in one mesh the one that is looked through is inside out; then media by nodes, then both boxes."""
+    before_the_sky()
+    apart = [(x + 4, y, z) for x, y, z in CORNERS]
+    inward = [face[::-1] for face in FACES]
+    nodes = stage.node_material("Nodes", "VolumeAbsorption", Color=(0, 0, 0, 1), Density=0.5)
+    tree = nodes.node_tree
+    shader, output = (next(n for n in tree.nodes if n.type == kind) for kind in ("VOLUME_ABSORPTION", "OUTPUT_MATERIAL"))
+    tree.links.new(shader.outputs[0], output.inputs["Volume"])
+    tree.links.remove(output.inputs["Surface"].links[0])
+    for material, other, sentence in (
+        (absorbing(0.5), FACES, "Boxes: the normals of 1 of the mesh's 2 media are flipped"),
+        (nodes, inward, "Boxes: the normals of 2 of the mesh's 2 media are flipped"),
+    ):
+        faces = inward + [tuple(corner + 8 for corner in face) for face in other]
+        obj = stage.mesh("Boxes", CORNERS + apart, faces, material=material)
+        assert mean(tmp_path) == pytest.approx(math.exp(-1), abs=0.025), material.name
+        assert said(sentence), stage.problems()
+        bpy.data.objects.remove(obj)
+    stage.mesh("Fine", CORNERS, FACES, material=nodes)
+    assert mean(tmp_path) == pytest.approx(math.exp(-1), abs=0.025)
+    assert not stage.problems()
+
+
+@pytest.mark.parametrize(
+    "where, name, sentence",
+    [
+        ("volume", "", "Cloud: Grid: no grid is named"),
+        ("mesh", "density", "Box: Grid: there are no grids in what is neither"),
+        ("world", "density", "World: Grid: there are no grids in what is neither"),
+    ],
+)
+def test_a_density_by_grid_without_grids_says_so(tmp_path, where, name, sentence):
+    scene = before_the_sky()
+    material = absorbing(1.0, density="GRID", grid=name)
+    if where == "volume":
+        cloud(tmp_path, np.ones((9, 9, 9))).data.materials.append(material)
+    elif where == "mesh":
+        stage.mesh("Box", CORNERS, FACES, material=material)
+    else:
+        scene.world.opal.kind, scene.world.opal.scale_height = "MEDIUM", 0.0
+        scene.world.opal.medium.density = "GRID"
+    assert mean(tmp_path) == pytest.approx(1, abs=0.01)
+    assert said(sentence), stage.problems()
 
 
 def test_no_extinction_is_clear(tmp_path):
@@ -246,6 +310,22 @@ def test_haze_of_the_world_thins_with_height(tmp_path):
     bpy.context.scene.camera.rotation_euler = (math.pi, 0, 0)  # straight up, from 5 m
     assert mean(tmp_path) == pytest.approx(math.exp(-0.02 * 50 * math.exp(-0.1)), abs=0.025)
     assert not stage.problems()
+
+
+def test_haze_chosen_for_a_world_lets_half_of_the_sky_through_from_overhead(tmp_path):
+    scene = before_the_sky()
+    scene.world.opal.kind = "MEDIUM"
+    scene.world.opal.medium.albedo = (0, 0, 0)
+    bpy.context.scene.camera.rotation_euler = (math.pi, 0, 0)
+    assert mean(tmp_path) == pytest.approx(math.exp(-0.5), abs=0.025)
+    assert not stage.problems()
+
+
+def test_a_worlds_own_numbers_stay_when_haze_is_chosen():
+    world = stage.world().opal
+    world.scale_height, world.medium.extinction = 20.0, 0.03
+    world.kind = "MEDIUM"
+    assert (world.scale_height, world.medium.extinction) == pytest.approx((20.0, 0.03))
 
 
 def test_fog_without_end_says_that_it_hides_the_sky(tmp_path):

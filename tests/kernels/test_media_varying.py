@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from opal_kernels import binding, programs
 from opal_kernels.descriptions import Density, EmissionDensity, MaterialFlag, Phase, PhaseKind, World
-from opal_kernels.optics import media
+from opal_kernels.optics import media, phase_functions, uplift
 from opal_kernels.scene import Scene
 from transport_scenes import IDENTITY, box, looking_down, orthographic, perspective, picture, square
 
@@ -263,6 +263,27 @@ def test_overlapping_media_add():
         filled_box(scene, (-1.1, -1.1, -0.5), (1.1, 1.1, 2), 0.4, way="grid")
         scene.set_world(World(programs.emission()))
         holds(*mean_and_error(scene, passes=2), np.exp(-0.6 - 0.4 * 2.5), 0.004)
+
+
+def test_a_medium_with_another_in_the_same_body_is_as_two_that_overlap():
+    """Red scatters alike into every direction, the rest back, 1 per metre together: the slab's single scattering by colour; and what
+    a cube lets through."""
+    red, g = np.array([0.9, 0.2, 0.3]), -0.4
+    with Scene(threads=2) as scene:
+        part = uplift.reflectance(red)
+        other = scene.add_medium(1 - part, 1.0, Phase(PhaseKind.HENYEY_GREENSTEIN, g))
+        filled_box(scene, (-WIDE, -WIDE, 0), (WIDE, WIDE, 1), part, 1.0, also=1 + other)
+        scene.add_light(type=2, power=1.0, transform=looking_down(5.0))
+        mean, error = mean_and_error(scene, passes=2, max_depth=0)
+        back = 4 * np.pi * phase_functions.henyey_greenstein(np.array(-1.0), g)
+        holds(mean, error, (red + (1 - red) * back) * media.single_scattering_slab(1.0, 1.0, 1.0)[0], 0.002)
+    with Scene(threads=2) as scene:
+        grid = 1 + even_grid(scene, (-1, -1, -1), (1, 1, 1), 2.0)
+        filled_box(scene, (-1, -1, -1), (1, 1, 1), 0.4, also=1 + scene.add_medium(0.1, 0.0, density=Density.GRID, density_grid=grid))
+        scene.set_world(World(programs.emission()))
+        holds(*mean_and_error(scene, passes=1), np.exp(-1.2), 0.004)
+        with pytest.raises(binding.OpalError, match="does not exist"):
+            scene.add_medium(1.0, also=9)
 
 
 def test_a_camera_inside_sees_through_the_rest():

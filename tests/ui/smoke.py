@@ -19,7 +19,7 @@ import bpy
 import numpy as np
 
 ZIP, FOLDER = sys.argv[-2], Path(sys.argv[-1])
-FRAMES, CELLS, SIZE = 6, 24, 64
+FRAMES, CELLS, SIZE, SKY = 6, 24, 64, 0.3
 
 
 def bake():
@@ -63,7 +63,7 @@ def light_and_look(domain):
     bpy.context.scene.world = world
     if world.node_tree is None:
         world.use_nodes = True
-    next(n for n in world.node_tree.nodes if n.type == "BACKGROUND").inputs["Color"].default_value = (0.3, 0.3, 0.3, 1)
+    next(n for n in world.node_tree.nodes if n.type == "BACKGROUND").inputs["Color"].default_value = (SKY, SKY, SKY, 1)
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
     camera.location, camera.rotation_euler = (0, -5, 0), (np.pi / 2, 0, 0)
     camera.data.type, camera.data.ortho_scale = "ORTHO", 2.0
@@ -100,7 +100,7 @@ def expected_picture(domain):
     edge = (np.arange(SIZE) + 0.5) / SIZE * 2 - 1  # the camera sees 2 m
     x, z = (edge - low[0]) / size[0] * nx, (edge - low[2]) / size[2] * nz
     inside = np.ix_((z >= 0) & (z < nz), (x >= 0) & (x < nx))
-    picture = np.full((SIZE, SIZE), 0.3)
+    picture = np.full((SIZE, SIZE), SKY)
     picture[inside] *= np.exp(-depth[np.ix_(z[(z >= 0) & (z < nz)].astype(int), x[(x >= 0) & (x < nx)].astype(int))])
     return picture, (nx, ny, nz)
 
@@ -115,12 +115,17 @@ def main():
     black = picture("absorbing").mean(axis=-1)
     shader.inputs["Blackbody Intensity"].default_value = 1.0
     fire = picture("glowing")
+    shader.inputs["Blackbody Intensity"].default_value = 0.0
+    domain.scale, bpy.context.scene.camera.data.ortho_scale = (2, 2, 2), 4.0
+    doubled = picture("doubled")
     return {
         "cells": list(cells),
         "darkest": float(expected.min()),
         "absorbing_mean": float(black.mean()),
         "expected_mean": float(expected.mean()),
         "correlation": float(np.corrcoef(black.ravel(), expected.ravel())[0, 1]),
+        "doubled_mean": float(doubled.mean()),
+        "expected_doubled_mean": float((expected**2 / SKY).mean()),
         "glow": [float(c) for c in (fire - black[..., None]).clip(0).reshape(-1, 3).mean(axis=0)],
     }
 

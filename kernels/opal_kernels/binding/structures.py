@@ -95,7 +95,7 @@ class MediumStruct(ctypes.Structure):
         ("noise_contrast", c_float),
         ("scale_height", c_float),
         ("base_height", c_float),
-        ("reserved", c_int32),
+        ("also", c_int32),
     ]
 
 

@@ -51,6 +51,8 @@ Medium medium_from(const Scene &scene, const opal_medium_desc &desc) {
   }
   m.scattering_grid = grid(desc.scattering_grid, 3), m.absorption_grid = grid(desc.absorption_grid, 3);
   m.emission_grid = grid(desc.emission_grid, 3);
+  require(desc.also >= 0 && size_t(desc.also) <= scene.media.size(), "The medium goes with one that does not exist");
+  m.also = desc.also - 1;
   return m;
 }
 

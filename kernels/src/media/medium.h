@@ -23,6 +23,7 @@ struct Medium {
   DensityField density, emission_density;
   int scattering_grid = -1, absorption_grid = -1, emission_grid = -1;  // three channels
   uint8_t layer = OPAL_MEDIUM_LAYER_MEDIA;                             // for compositing
+  int also = -1;  // another medium of the same body: one more phase function, with coefficients of its own
 
   bool varies() const {
     return density.kind != DensityKind::Homogeneous || emission_density.kind != DensityKind::Homogeneous ||
@@ -30,7 +31,8 @@ struct Medium {
   }
 };
 
-// The media a path is inside of, each entered through the boundary of one instance.
+// The media a path is inside of, each entered through the boundary of one instance; what a medium brings along with itself
+// (`also`) is added by media_that_fill.
 class MediumSet {
  public:
   static constexpr int kCapacity = 8;

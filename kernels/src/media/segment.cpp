@@ -85,13 +85,15 @@ Spectrum transmittance_over(const Spectrum &extinction, float t) {
 
 MediumSet media_that_fill(const Scene &scene, const MediumSet &entered, const InteriorStack &interior) {
   const InteriorStack::Entry *solid = interior.current();
-  if (!solid) return entered;
   MediumSet there;
   for (int i = 0; i < entered.count(); ++i) {
     const uint32_t instance = entered[i].instance;
-    if (instance >= scene.instances.size()) continue;  // the world's
-    const bool smaller = !interior.contains(instance) && scene.instances[instance].order > solid->order;
-    if (instance == solid->instance || smaller) there.enter(instance, entered[i].medium);
+    if (solid) {
+      if (instance >= scene.instances.size()) continue;  // the world's
+      const bool smaller = !interior.contains(instance) && scene.instances[instance].order > solid->order;
+      if (instance != solid->instance && !smaller) continue;
+    }
+    for (int m = entered[i].medium; m >= 0; m = scene.media[size_t(m)].also) there.enter(instance, m);
   }
   return there;
 }

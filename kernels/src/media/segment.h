@@ -51,9 +51,9 @@ inline void cross_medium(const Material &material, const ShadingPoint &sp, Mediu
   else set.enter(sp.instance_index, material.medium);
 }
 
-// Of the media whose boundaries a path has entered, those that are there. A solid or liquid leaves no room for the fog round
-// it: in a gem there is the gem's own medium and what smaller bodies bring into it, by the rule that says which of
-// overlapping interiors counts. It depends on the place alone and not on the way there.
+// Of the media whose boundaries a path has entered, those that are there, with what each brings along. A solid or liquid leaves
+// no room for the fog round it: in a gem there is the gem's own medium and what smaller bodies bring into it, by the rule that
+// says which of overlapping interiors counts. It depends on the place alone and not on the way there.
 MediumSet media_that_fill(const Scene &scene, const MediumSet &entered, const InteriorStack &interior);
 
 // The media entered at a point, found by looking along a ray for boundaries that are left without having been entered.
