@@ -9,7 +9,8 @@ Sub-commands: `cycles` (time to Cycles' error at 64 samples), `examples` (the ex
 and brilliant, time to relative MSE 0.01), `gems` (what dispersion costs, and its chroma), `speed` (rays, photons, building), `start`
 (import, enable), `viewport` (first image, refinements, edits, F12, memory beside Cycles), `media` (the fog box of the report,
 the three volume estimates, the fog box beside Cycles), `media-examples` (the three on the examples of media), `clouds`
-(a cloud of noise beside Cycles), `rainbows` (Lorenz-Mie tables beside miepython and scattnlay). Run it on a machine that does nothing else.
+(a cloud of noise beside Cycles), `rainbows` (Lorenz-Mie tables beside miepython and scattnlay), `double-bow` (seconds and noise of a
+double bow over a landscape). Run it on a machine that does nothing else.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ def main() -> None:
     parser.add_argument(
         "what",
         nargs="*",
-        help="cycles, examples, caustics, gems, media, media-examples, clouds, speed, start, viewport, rainbows; cycles, speed and start when left out",
+        help="cycles, examples, caustics, gems, media, media-examples, clouds, speed, start, viewport, rainbows, double-bow; cycles, speed and start when left out",
     )
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--seconds", type=float, default=30.0, help="of each run of caustics, media and media-examples")
@@ -60,7 +61,7 @@ def main() -> None:
     options = parser.parse_args()
     found = {}
     for what in options.what or ["cycles", "speed", "start"]:
-        if what in {"cycles", "examples", "media-examples", "clouds"} and not options.inside:
+        if what in {"cycles", "examples", "media-examples", "clouds", "double-bow"} and not options.inside:
             found[what] = _inside_blender(what, options)
         elif what == "cycles":
             import against_cycles
@@ -118,13 +119,19 @@ def main() -> None:
 
             found[what] = rainbows.measure()
             rainbows.report(found[what])
+        elif what == "double-bow":
+            import double_bow
+
+            found[what] = double_bow.measure_all()
+            double_bow.report(found[what])
         elif what == "gems":
             import gems
 
             found[what] = gems.measure(options.scenes, options.seconds, options.repeats, options.reference_seconds)
             gems.report(found[what])
         else:
-            parser.error(f"there is no {what}: cycles, examples, caustics, gems, media, media-examples, speed, start, viewport or rainbows")
+            known = "cycles, examples, caustics, gems, media, media-examples, clouds, speed, start, viewport, rainbows or double-bow"
+            parser.error(f"there is no {what}: {known}")
     if options.json:
         options.json.parent.mkdir(parents=True, exist_ok=True)
         options.json.write_text(json.dumps(found, indent=1))

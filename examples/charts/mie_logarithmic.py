@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Lorenz-Mie's phase function on a logarithmic scale: why the report's rainbow was "spotty, dark, noise".
 
-    PYTHONPATH=kernels python examples/charts/mie_logarithmic.py [picture.png]
+    PYTHONPATH=kernels python examples/charts/mie_logarithmic.py [--output mie_logarithmic.png]
 
 One drop of a quarter of a millimetre has a forward peak ten million times the bow's height and a ripple finer than a table of whole
 degrees can hold. Under the sun's disc and over sizes that differ by 5 per cent the ripple averages away, and the bow stands out.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A lesson: Airy's intensity by too few terms of De Morgan's power series, beside the right one.
 
-    PYTHONPATH=kernels python examples/charts/too_few_terms.py [picture.png]
+    PYTHONPATH=kernels python examples/charts/too_few_terms.py [--output too_few_terms.png]
 
 The series converges everywhere, but each supernumerary arc needs more terms than the last; with too few the intensity leaves the page.
 """

@@ -8,21 +8,21 @@ lobe both are double: `Drops.extinction_factor`. The sun's disc is not folded in
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from functools import lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from . import binding
 from .descriptions import Phase, PhaseKind
 from .table_store import TableStore
 
 if TYPE_CHECKING:
     from .optics.rainbow.arcs import Arcs
-
-# Belongs to every stored table's key: raise it when a table's numbers change.
-TABLE_VERSION = 8
 
 FIRST_NM, LAST_NM, STEP_NM = 380.0, 780.0, 10.0
 FLAT_STEP_NM = 25.0
@@ -105,7 +105,21 @@ class Drops:
 
     def key(self) -> str:
         """Everything that the table's numbers depend on, as text."""
-        return f"drops {TABLE_VERSION} {sorted(asdict(self).items())}"
+        return f"drops {_code()} {sorted(asdict(self).items())}"
+
+
+_SOURCES = ("droplets.py", "optics/dispersion.py", "optics/fresnel.py", "optics/rainbow/*.py")
+
+
+@lru_cache(maxsize=1)
+def _code() -> str:
+    """Hash of all that a table's numbers come out of, the library's sums among it: what other code computed is never found again."""
+    folder = Path(__file__).parent
+    files = [path for pattern in _SOURCES for path in sorted(folder.glob(pattern))]
+    found = hashlib.sha256()
+    for path in (*files, Path(binding.library()._name)):
+        found.update(path.read_bytes())
+    return found.hexdigest()[:16]
 
 
 def _indices(drops: Drops, wavelengths: np.ndarray) -> np.ndarray | None:

@@ -23,7 +23,11 @@ FALLING = {"flattening": 1.0, "sun_elevation_rad": 0.31}
         ("DROPLET", 500.0, 0.06, "TWO_SIZES", FALLING, 0.002),
         ("DROPLET", 400.0, 0.3, "GAMMA", FALLING, 0.01),
         ("DROPLET", 171.0, 1.0, "MARSHALL_PALMER", FALLING, 0.04),
+        ("MIE", 5.0, 0.05, "LOG_NORMAL", {}, 0.02),
         ("MIE", 10.0, 0.1, "LOG_NORMAL", {}, 0.025),
+        ("MIE", 20.0, 0.05, "LOG_NORMAL", {}, 0.025),
+        ("MIE", 60.0, 0.05, "GAMMA", {}, 0.025),
+        ("MIE", 150.0, 0.05, "NORMAL", {}, 0.025),
     ],
 )
 def test_twice_as_many_sizes_show_the_same_bow(theory, radius, spread, distribution, place, error):

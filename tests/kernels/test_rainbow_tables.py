@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Tables for the tracer: normalised, with the theory's asymmetry, kept on disk, and recomputed when a file is damaged."""
 
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from opal_kernels import droplets
@@ -119,6 +123,41 @@ def test_every_parameter_belongs_to_the_key():
     assert set(changes) == set(Drops.__dataclass_fields__)
     keys = {Drops(**{**base.__dict__, name: value}).key() for name, value in changes.items()}
     assert len(keys) == len(changes) and base.key() not in keys
+
+
+def test_another_formula_has_other_keys(tmp_path, monkeypatch):
+    """A stored table is found by the very sources that computed it: a changed one, or another library, computes it again."""
+    before = SMALL.key()
+    package = tmp_path / "opal_kernels"
+    for pattern in droplets._SOURCES:
+        found = list(Path(droplets.__file__).parent.glob(pattern))
+        assert found, pattern
+        for path in found:
+            copy = package / path.relative_to(Path(droplets.__file__).parent)
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            copy.write_bytes(path.read_bytes())
+    monkeypatch.setattr(droplets, "__file__", str(package / "droplets.py"))
+
+    def key():
+        droplets._code.cache_clear()
+        return SMALL.key()
+
+    try:
+        assert key() == before
+        with (package / "optics" / "rainbow" / "airy.py").open("a") as file:
+            file.write("# changed\n")
+        assert key() != before
+    finally:
+        droplets._code.cache_clear()
+
+
+def test_the_keys_sources_are_all_that_tables_use():
+    """Whatever of the optics the theories load is among the sources that a table's key counts."""
+    code = "import sys, opal_kernels.optics.rainbow._tables; print(*[m.__file__ for n, m in sys.modules.items() if n.startswith('opal_kernels.optics.')])"
+    used = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    folder = Path(droplets.__file__).parent
+    counted = {path for pattern in droplets._SOURCES for path in folder.glob(pattern)}
+    assert len(used) > 10 and {Path(path) for path in used} <= counted, {Path(path).name for path in used} - {path.name for path in counted}
 
 
 def test_glass_beads_have_their_bow_at_22_degrees():

@@ -66,11 +66,21 @@ def _under_the_sun(values: np.ndarray, step_rad: float) -> np.ndarray:
     return np.apply_along_axis(np.convolve, -1, padded, kernel, "valid")
 
 
-def bow(theory: str, radius_um: float, spread: float, step_nm: float = _STRIP_NM, step_deg: float = _STEP, sizes: int = _MIE_SIZES) -> Bow:
-    """Return one theory's bows between `FIRST_DEG` and `LAST_DEG` from the antisolar point."""
+def bow(
+    theory: str,
+    radius_um: float,
+    spread: float,
+    step_nm: float = _STRIP_NM,
+    step_deg: float = _STEP,
+    sizes: int = _MIE_SIZES,
+    progress: Progress | None = None,
+) -> Bow:
+    """Return one theory's bows between `FIRST_DEG` and `LAST_DEG` from the antisolar point; `progress` as of `rainbow.phase_function`."""
     radius = np.arange(FIRST_DEG - _MARGIN, LAST_DEG + _MARGIN + step_deg / 2, step_deg)
     wavelengths = np.arange(380.0, 780.5, step_nm)
-    p = rainbow.phase_function(theory, radius_um, wavelengths, np.radians(180 - radius), spread, sizes=sizes if spread > 0 else 1)
+    p = rainbow.phase_function(
+        theory, radius_um, wavelengths, np.radians(180 - radius), spread, sizes=sizes if spread > 0 else 1, progress=progress
+    )
     p = _under_the_sun(p, np.radians(step_deg))
     xyz = np.einsum("cw,pwa->pac", _colours(wavelengths), p)
     inside = (radius > FIRST_DEG - step_deg / 2) & (radius < LAST_DEG + step_deg / 2)
@@ -106,15 +116,16 @@ def compute(radius_um: float, spread: float, largest_um: float = 500.0, lee_rows
     sheet = Sheet(radius_um, spread, lee_radii_um=np.geomspace(SMALLEST_UM, largest_um, lee_rows))
     costs = {"MIE": 12.0}
     steps = [("bow", theory, radius_um, costs.get(theory, 1.0)) for theory in rainbow.THEORIES]
-    steps += [("lee", t, r, 0.3 + (r / 150) ** 2 if t == "MIE" else 0.3) for r in sheet.lee_radii_um for t in LEE_THEORIES]
-    total, done = sum(cost for *_, cost in steps), 0.0
+    steps += [("lee", t, r, 0.3 + (r / 150) ** 2 if t == "MIE" else 0.3) for r in sheet.lee_radii_um.tolist() for t in LEE_THEORIES]
+    total, done = float(sum(cost for *_, cost in steps)), 0.0
     for what, theory, micrometres, cost in steps:
-        if progress is not None and progress(done / total) is False:
+        within = _within(progress, done / total, cost / total)
+        if within is not None and within(0.0) is False:
             raise rainbow.Cancelled("the chart was cancelled")
         if what == "bow":
-            sheet.bows[theory] = bow(theory, micrometres, spread)
+            sheet.bows[theory] = bow(theory, micrometres, spread, progress=within)
         else:
-            one = bow(theory, micrometres, 0.0, _LEE_NM, 2 * _STEP)
+            one = bow(theory, micrometres, 0.0, _LEE_NM, 2 * _STEP, progress=within)
             row = one.rgb / one.luminance.max()
             sheet.lee.setdefault(theory, np.zeros((0, *row.shape)))
             sheet.lee[theory] = np.concatenate([sheet.lee[theory], row[None]])
@@ -123,6 +134,11 @@ def compute(radius_um: float, spread: float, largest_um: float = 500.0, lee_rows
     both = rainbow.phase_function("MIE", radius_um, [550.0], np.radians(sheet.mie_deg), 0.0)[:, 0]
     sheet.mie_perpendicular, sheet.mie_parallel = both
     return sheet
+
+
+def _within(progress: Progress | None, before: float, share: float) -> Progress | None:
+    """The progress of one step, which has a share of the whole and something before it."""
+    return None if progress is None else lambda done: progress(before + share * done)
 
 
 # Ranges of radius (degrees) in which each bow's top is looked for, and the dark band between them.

@@ -31,6 +31,7 @@ from opal_kernels.optics.rainbow import (
 
 # Sizes of Airy and Droplet: a share of the radius between neighbours, and how many in each population.
 _SIZE_STEP, _FEWEST, _MOST = 0.012, 21, 144
+_SHARP = 80.0  # size parameter under which single resonances show
 _RIPPLE = 0.4  # of a size parameter, half the period of Lorenz-Mie's ripple
 _RAY_GRID = 36001  # 0.005 degrees
 _FINEST = 288000  # intervals that a polynomial is filled in to
@@ -110,7 +111,8 @@ def _sizes(theory: str, radius_um: float, nm: np.ndarray, spread: float, distrib
     """How many sizes average away the ripple of Lorenz-Mie theory, or the arcs that each size of another theory draws.
 
     Lorenz-Mie: measured on primaries of 5 % spread at 550 nm under a point sun, against four times as many: the peak is within 1.5 % from 20
-    to 250 um radius and 3.5 % at 500, single angles within 2.5 % of the peak (3.6 at 500). Ask for more `sizes` where that shows.
+    to 250 um radius and 3.5 % at 500, single angles within 2.5 % of the peak (3.6 at 500). Ask for more `sizes` where that shows. Under 7 um
+    twice as many: a resonance of so small a drop is a larger part of its light.
     """
     if theory.startswith("DESCARTES"):
         return 1
@@ -120,7 +122,7 @@ def _sizes(theory: str, radius_um: float, nm: np.ndarray, spread: float, distrib
         return int(np.clip(needed, _FEWEST, _MOST)) * populations
     x = 2000 * np.pi * radius_um / nm.mean()
     ripples = drops.count_for(spread, distribution, _RIPPLE / x)  # what small drops need and can be given
-    return int(max(np.clip(1.44e5 / x, 48, 240), min(ripples, 1.44e5 / x, 480)))
+    return int(max(np.clip(1.44e5 / x, 48, 240 if x > _SHARP else 480), min(ripples, 1.44e5 / x, 480)))
 
 
 def _grid(theory: str, radii: np.ndarray, nm: float) -> int:
@@ -188,19 +190,34 @@ def _mie(
     intervals = _fourier.fast_length(2 * _mie_binding.terms(sizes.max()) + 2)
     sparse = not uniform and 1.5 * intervals < angles.size
     at = np.linspace(0, np.pi, intervals + 1) if sparse else angles
-    total = np.zeros((2, at.size))
+    area = (weights * np.pi * sizes**2 * mie.efficiencies(n, sizes)[1]).sum()
+    phase = _summed(at, uniform, n, sizes, weights, stopping) / area
+    if sparse:
+        phase = _filled_in(phase, angles)
+    if diffraction:
+        return phase
+    front, solid_angles, last = _front(sizes, share)
+    before = _summed(front, False, n, sizes, weights, stopping) / area
+    after = _without_lobe(front, before, n, sizes, share)
+    # Beyond the front all is doubled but for what is left of the lobe, whose integral is 1.
+    lobe = geometric.diffraction(front, sizes, share) @ solid_angles if last < np.pi / 2 else 1.0
+    whole = (after - 2 * before).mean(axis=0) @ solid_angles + 1 + lobe
+    return _without_lobe(angles, phase, n, sizes, share) / whole
+
+
+def _summed(angles: np.ndarray, uniform: bool, n: float, sizes: np.ndarray, weights: np.ndarray, stopping: threading.Event) -> np.ndarray:
+    """Intensities (2, n_angles) of spheres, each times its weight."""
+    total = np.zeros((2, angles.size))
     # Single spheres where each is filled in by itself, else as many at once as make a tenth of a second's work.
-    each = 1 if uniform else max(1, int(2e7 / (_mie_binding.terms(sizes.max()) * at.size)))
+    each = 1 if uniform else max(1, int(2e7 / (_mie_binding.terms(sizes.max()) * angles.size)))
     for some in np.array_split(np.arange(sizes.size), -(-sizes.size // each)):
         if stopping.is_set():
             raise Cancelled("the table was cancelled")
         if uniform:
             total += weights[some] * mie.uniform_intensities(n, float(sizes[some[0]]), angles.size, threads=1)
         else:
-            total += mie.summed_intensities(n, sizes[some], weights[some], at, threads=1)
-    area = (weights * np.pi * sizes**2 * mie.efficiencies(n, sizes)[1]).sum()
-    phase = (_filled_in(total, angles) if sparse else total) / area
-    return phase if diffraction else _without_lobe(angles, phase, n, sizes, share)
+            total += mie.summed_intensities(n, sizes[some], weights[some], angles, threads=1)
+    return total
 
 
 def _filled_in(values: np.ndarray, angles: np.ndarray) -> np.ndarray:
@@ -218,17 +235,36 @@ def _filled_in(values: np.ndarray, angles: np.ndarray) -> np.ndarray:
     return np.clip([np.interp(angles, nodes, row) for row in fine], 0, None)
 
 
+def _front(sizes: np.ndarray, share: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """Angles and solid angles that integrate, after Gauss and Legendre, what taking the lobe away changes by more than a difference; and where they end.
+
+    From forward to three times where `_without_lobe` ends its mending: all of the front where the drops are small. As many angles as the polynomial
+    that is integrated has fringes there, and a quarter more.
+    """
+    x = 1 / (share / sizes).sum()  # by which the lobe's mean goes
+    last = min(3 * _lobe_end(x), np.pi / 2) if x >= _RAYS_FROM else np.pi / 2  # behind that a disc diffracts nothing
+    nodes, weights = np.polynomial.legendre.leggauss(64 + int(2.5 * _mie_binding.terms(sizes.max()) * last / np.pi))
+    angles = 0.5 * last * (nodes + 1)
+    return angles, weights * np.pi * last * np.sin(angles), last
+
+
+def _lobe_end(x: float) -> float:
+    """Angle at which the diffraction lobe's mean, 1/(pi^2 x theta^3), has fallen to 0.3/sr."""
+    return (1 / (0.3 * np.pi**2 * x)) ** (1 / 3)
+
+
 def _without_lobe(angles: np.ndarray, phase: np.ndarray, n: float, sizes: np.ndarray, share: np.ndarray) -> np.ndarray:
-    """Take the diffraction lobe, half of all light, out of Lorenz-Mie's phase function and double what remains.
+    """Take the diffraction lobe, half of all light, out of Lorenz-Mie's phase function and double what remains; its integral is near 1.
 
     Amplitudes near the forward direction are the lobe's with a little of all else, and a difference of two large numbers is
-    nothing to keep: there the rays' intensity stands, to where the lobe's mean 1/(pi^2 x theta^3) has fallen to 0.3/sr.
+    nothing to keep: there the rays' intensity stands, to half again `_lobe_end`. Drops under a few wavelengths have no lobe to speak of: what a
+    disc's is above their light is cut off.
     """
     rest = np.clip(2 * phase - geometric.diffraction(angles, sizes, share), 0, None)
     x = (share * sizes).sum()
     if x < _RAYS_FROM:
         return rest
-    end = (1 / (0.3 * np.pi**2 * x)) ** (1 / 3)
+    end = _lobe_end(x)
     near = angles < 1.5 * end
     if near.any():
         t = np.clip(2 * angles[near] / end - 2, 0, 1)
