@@ -99,6 +99,7 @@ class _FinalRender:
             result = self.engine.begin_result(0, 0, width, height, layer=self.layer.name)
             try:
                 finished = self._look(scene, result) and self._run_passes(render, result)
+                self._note_overlaps(render)
                 cancelled = not (self._write_everything(render, result, denoised=self.denoise and finished) and finished)
                 if self.capture is not None and render.passes_done:
                     self.capture.take(self.layer.name, render)
@@ -108,6 +109,10 @@ class _FinalRender:
                     self._write_film(render)
             finally:
                 self.engine.end_result(result, cancel=False, do_merge_results=False)
+
+    def _note_overlaps(self, render: Render) -> None:
+        if render.statistics["gems_passed_over"]:
+            self.report.add("", "more than 32 gems lie within each other: what is inside of them turns dark", lost=True)
 
     def _refuse_what_does_not_fit(self) -> None:
         width, height = self.frame.region_size

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A gold ring with a diamond in four claws: caustics of polished metal and of a gem side by side.
 
-The ring lies on the table, on its band and two of its claws. Its inner face gathers the lamp's light in the cusped curve that a cup of tea
-shows, the cardioid's and nephroid's kin; the stone scatters its spectra beside it.
+The ring lies on the table, on its band and two of its claws. Light from the left comes in over the band, and its inner face gathers it in
+the cusped curve that a cup of tea shows, the cardioid's and nephroid's kin; the stone scatters its spectra into its own shadow.
 """
 
 import math
@@ -18,20 +18,27 @@ import _scene
 
 INNER, THICK, WIDE = 0.0085, 0.0016, 0.0024
 """Radius inside the ring, and its band's thickness and width, m."""
+FLAT = 0.25
+"""How round the band's inner side is: 1 as its outer side, 0 not at all."""
 STONE = 0.0068
 
 
 def band(material: bpy.types.Material) -> bpy.types.Object:
-    """The ring: an oval section carried round the y axis, lowest point on the table."""
-    around, section = 160, 40
+    """The ring: a section that is round outside and all but flat inside, carried round the y axis, lowest point on the table.
+
+    A finger's side that bulged would scatter the light that it should gather.
+    """
+    around, section = 240, 64
     middle = INNER + 0.5 * THICK
     vertices = []
     for i in range(around):
         a = math.tau * i / around
         for j in range(section):
-            b = math.tau * j / section
-            r = middle + 0.5 * THICK * math.cos(b)
-            vertices.append((r * math.sin(a), 0.5 * WIDE * math.sin(b), INNER + THICK + r * math.cos(a)))
+            c, s = math.cos(math.tau * j / section), math.sin(math.tau * j / section)
+            if c < 0:
+                c, s = -((-c) ** FLAT), math.copysign(abs(s) ** FLAT, s)
+            r = middle + 0.5 * THICK * c
+            vertices.append((r * math.sin(a), 0.5 * WIDE * s, INNER + THICK + r * math.cos(a)))
     faces = []
     for i in range(around):
         for j in range(section):
@@ -79,9 +86,9 @@ def build() -> bpy.types.Scene:
         claw((0.0004 * c, 0.0004 * s, top - 0.4e-3), (0.53 * STONE * c, 0.53 * STONE * s, seat + 0.10 * STONE), 0.00032, gold)
     lay_down([obj for obj in scene.collection.objects if obj.type == "MESH"], lift=math.radians(5.5), turn=math.radians(24.0))
     _scene.stage(0.6, _scene.matte("Table", (0.36, 0.35, 0.35)), depth=0.12, wall=0.2)
-    _scene.lamp("Lamp", "AREA", (-0.050, 0.075, 0.060), (0.0, 0.0, 0.0), 0.30, shape="DISK", size=0.004)
-    _scene.hdri(_scene.studio_light("interior"), 0.15, math.radians(-40.0))
-    _scene.camera((0.012, -0.085, 0.052), (0.0025, -0.0045, 0.001), 88.0, fstop=16.0, focus=(0.0, -0.013, 0.003))
+    _scene.lamp("Lamp", "AREA", (-0.090, -0.020, 0.050), (0.0, 0.0, 0.0), 0.42, shape="DISK", size=0.004)
+    _scene.hdri(_scene.studio_light("interior"), 0.10, math.radians(-40.0))
+    _scene.camera((0.008, -0.072, 0.070), (0.0035, -0.0025, 0.001), 96.0, fstop=16.0, focus=(0.0, -0.012, 0.003))
     scene.render.resolution_x, scene.render.resolution_y = 840, 600
     _scene.limit(scene, 256, 400_000)
     return scene

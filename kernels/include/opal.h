@@ -452,6 +452,8 @@ typedef struct opal_render_statistics {
    * roulette added and took. */
   double energy_emitted, energy_stored, energy_absorbed, energy_escaped;
   double pilot_seconds; /* planning an adaptive render, before its first pass */
+  /* How often a path came into a gem within 32 others, which is as many as it keeps account of: beyond, light gets lost. */
+  int64_t gems_passed_over;
 } opal_render_statistics;
 OPAL_EXPORT int32_t opal_render_get_statistics(const opal_render *render, opal_render_statistics *out);
 

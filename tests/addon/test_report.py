@@ -53,6 +53,18 @@ def test_lines_name_owner_and_part_and_say_whether_it_is_lost(rendered):
     assert all(e.kind == "MATERIAL" for e in lines.values())
 
 
+def test_more_gems_within_each_other_than_a_path_keeps_account_of_are_reported(rendered):
+    material = stage.matte("Jelly")
+    material.opal.kind = "GEM"
+    material.opal.gem.species = "WATER"
+    for i in range(34):
+        half = 2.0 - 0.01 * i
+        corners = [(x, y, z) for x in (-half, half) for y in (-half, half) for z in (-half, half)]
+        faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+        stage.mesh(f"Shell {i}", corners, faces, material=material)
+    assert [entry.message for entry in rendered() if "32 gems" in entry.message and entry.lost]
+
+
 def test_the_list_shows_the_report_and_is_searched(rendered):
     report_list = stage.addon("report_list")
     stage.plane(material=toon())

@@ -37,15 +37,15 @@ def test_alexandrite_is_green_by_day_and_red_by_lamplight(spectrum, hue):
     stone, _ = seen(spectrum)
     red, green, blue = stone
     if hue == "green":
-        assert green > 1.05 * red and green > blue, stone
+        assert green > 1.3 * red and green > 1.9 * blue, stone  # reached: 1.37, 2.04
     else:
-        assert red > 2 * green and red > 2 * blue, stone
+        assert red > 4.5 * green and red > 16 * blue, stone  # reached: 4.73, 17.6
 
 
 def test_the_change_is_more_than_that_of_the_lamps():
-    """Beside the paper under the same lamp, to which the eye adapts, red against green more than doubles... or nearly."""
+    """Beside the paper under the same lamp, to which the eye adapts, red against green grows by 2.8."""
     day, day_paper = seen(illuminants.lamp("D65"))
     night, night_paper = seen(illuminants.blackbody(2800.0))
     change = (night[0] / night[1]) / (day[0] / day[1])
     of_paper = (night_paper[0] / night_paper[1]) / (day_paper[0] / day_paper[1])
-    assert change > 1.15 * of_paper, f"{change:.2f} against {of_paper:.2f}"
+    assert change > 2.7 * of_paper, f"{change:.2f} against {of_paper:.2f}"

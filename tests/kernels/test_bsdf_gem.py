@@ -99,3 +99,31 @@ def test_no_boundary_bends_nothing():
     s = Bsdf("GEM", direction(50, 30), eta=[1] * 8).sample(points(16))
     np.testing.assert_allclose(s["wi"], np.broadcast_to(-direction(50, 30), (16, 3)), atol=1e-6)
     np.testing.assert_allclose(s["weight"], 1, rtol=1e-6)
+
+
+def refracted(incoming, outward, n_front, n_behind):
+    """The direction in which the boundary with this outward normal lets a ray through."""
+    facing = -np.sign(incoming @ outward) * outward
+    s = Bsdf("GEM", -incoming, geometric_normal=facing, shading_normal=facing, eta=[n_behind / n_front] * 8).sample(points(256))
+    return s["wi"][(s["scattering"] & TRANSMIT) != 0][0]
+
+
+def axis_crossing(n, height):
+    """Where a ray that runs along +z at this height over the axis, through a ball of radius 1 about the origin, meets the axis, or came from."""
+    forward = np.array([0.0, 0, 1])
+    entry = np.array([height, 0, -np.sqrt(1 - height**2)])
+    inside = refracted(forward, entry, 1, n)
+    leave = entry - 2 * (entry @ inside) * inside
+    out = refracted(inside, leave / np.linalg.norm(leave), n, 1)
+    return leave[2] - leave[0] * out[2] / out[0]
+
+
+@pytest.mark.parametrize(("n", "focus"), [(1.333, 2.001502), (1.5, 1.5), (1.7682, 1.150872), (2.0, 1.0), (2.417259, 0.852783)])
+def test_a_ball_brings_paraxial_rays_to_its_focus(n, focus):
+    """PHYSICS 5.8. Spherical aberration grows with the square of the height and is taken off with two of them."""
+    assert (4 * axis_crossing(n, 0.02) - axis_crossing(n, 0.04)) / 3 == pytest.approx(focus, abs=1e-4)
+
+
+@pytest.mark.parametrize(("height", "crossing"), [(0.1, 1.49583), (0.4, 1.43164), (0.8, 1.20028)])
+def test_marginal_rays_cross_the_axis_before_the_focus(height, crossing):
+    assert axis_crossing(1.5, height) == pytest.approx(crossing, abs=1e-4)

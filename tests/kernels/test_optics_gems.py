@@ -209,10 +209,3 @@ def test_a_chain_keeps_polarisation():
     assert fresnel.chain([("T", cos_i, 1.5), ("T", cos_t, 1 / 1.5)]) == pytest.approx(0.863012, abs=1e-6)
     with pytest.raises(ValueError, match="R or T"):
         fresnel.chain([("X", 1, 1.5)])
-
-
-def test_ball_lens_focus():
-    for n, focus in [(1.333, 2.001502), (1.5, 1.5), (1.7682, 1.150872), (2.417259, 0.852783)]:
-        height = 1e-4  # a paraxial ray, traced
-        i, t = np.arcsin(height), np.arcsin(height / n)
-        assert height / np.sin(2 * (i - t)) == pytest.approx(focus, abs=2e-5)

@@ -10,7 +10,7 @@ from opal_kernels.cuts import round_brilliant
 from opal_kernels.descriptions import Light, LightType, MaterialFlag, World, wavelengths
 from opal_kernels.optics import colour, species
 from opal_kernels.scene import Scene
-from transport_scenes import IDENTITY, box, looking_down, orthographic, picture, square
+from transport_scenes import IDENTITY, box, looking_down, orthographic, picture, sphere, square
 
 DEEP = {"max_depth": 1024, "photons_per_pass": 0}
 
@@ -33,6 +33,32 @@ def test_lossless_gem_vanishes_in_a_white_furnace(index):
     assert image == pytest.approx(1.0, abs=0.005), f"pixels from {image.min():.4f} to {image.max():.4f}"
 
 
+def cube_of_a_balls_normals():
+    corners, faces = box((-1, -1, -1), (1, 1, 1))
+    return np.array(corners), faces, (np.array(corners) / math.sqrt(3))[np.array(faces)]
+
+
+COARSE = {"ball of 60 faces": sphere(1.0, 6, 12), "cube": cube_of_a_balls_normals()}
+
+
+@pytest.mark.parametrize("index", [1.5, 2.417])
+@pytest.mark.parametrize("name", COARSE)
+def test_coarse_smooth_gems_trap_no_light(name, index):
+    """Interpolated normals that stand up to 55° off their faces lead some light round and round inside; it has to come out again."""
+    corners, faces, normals = COARSE[name]
+    tilted = np.array(
+        [[1, 0, 0, 0], [0, math.cos(0.4), -math.sin(0.4), -3 * math.sin(0.4)], [0, math.sin(0.4), math.cos(0.4), 3 * math.cos(0.4)]]
+    )
+    with Scene(threads=2) as scene:
+        scene.add_instances(scene.add_mesh(corners, faces, corner_normals=normals), IDENTITY, [scene.add_gem(index)])
+        scene.set_world(World(programs.emission()))
+        scene.set_camera(**orthographic(1.2, tilted))
+        scene.commit()
+        image = picture(scene, 8, size=24, samples_per_pass=16, **DEEP)
+    assert image.mean() == pytest.approx(1.0, abs=0.001)
+    assert image == pytest.approx(1.0, abs=0.02), f"pixels from {image.min():.4f} to {image.max():.4f}"
+
+
 def test_diamond_vanishes_in_a_white_furnace():
     """With its dispersion: paths part by colour, so pixels are noisy, and the mean is white within 4 standard errors and 0.5 %."""
     with Scene(threads=2) as scene:
@@ -53,7 +79,9 @@ PLATES = [
     (1.5, 1.0, 0.339111),
     (1.5, 2.0, 0.124729),
     (2.4173, 0.0, 0.706468),
+    (2.4173, 0.5, 0.420392),
     (2.4173, 1.0, 0.253219),
+    (2.4173, 2.0, 0.092831),
 ]
 
 
@@ -69,7 +97,38 @@ def test_plate_transmits_as_beer_and_lambert_say(index, depth, transmittance):
         image = picture(scene, 16, samples_per_pass=32, **DEEP)
     error = image.std() / math.sqrt(image.size / 3)
     assert error < 0.004 * transmittance
-    assert image.mean(axis=(0, 1)) == pytest.approx(transmittance, rel=0.003, abs=4 * error)
+    # Nothing is reflected by index 1: no chance is in it, and no noise.
+    within = 3e-5 * transmittance if index == 1 else 4 * error
+    assert image.mean(axis=(0, 1)) == pytest.approx(transmittance, rel=0, abs=within), f"{image.mean()} ± {error}"
+
+
+# And what it sends back, of light from above.
+MIRRORS = [
+    (1.5, 0.0, 0.076923),
+    (1.5, 0.5, 0.053569),
+    (1.5, 1.0, 0.044990),
+    (1.5, 2.0, 0.040675),
+    (2.4173, 0.0, 0.293532),
+    (2.4173, 0.5, 0.215871),
+    (2.4173, 1.0, 0.188035),
+    (2.4173, 2.0, 0.174172),
+]
+
+
+@pytest.mark.parametrize("index, depth, reflectance", MIRRORS)
+def test_plate_reflects_as_its_interreflections_say(index, depth, reflectance):
+    """A plate on nothing, over a black floor, under a white sky."""
+    with Scene(threads=2) as scene:
+        black = scene.add_material(programs.diffuse((0, 0, 0)))
+        scene.add_instances(scene.add_mesh(*box((-3, -3, 0), (3, 3, 0.25))), IDENTITY, [scene.add_gem(index, depth / 0.25)])
+        scene.add_instances(scene.add_mesh(*square(3, -0.5)), IDENTITY, [black])
+        scene.set_world(World(programs.emission()))
+        scene.set_camera(**orthographic(0.5, looking_down(2.0)))
+        scene.commit()
+        image = picture(scene, 16, samples_per_pass=32, **DEEP)
+    error = image.std() / math.sqrt(image.size / 3)
+    assert error < 0.012 * reflectance
+    assert image.mean(axis=(0, 1)) == pytest.approx(reflectance, rel=0, abs=4 * error), f"{image.mean()} ± {error}"
 
 
 def wall_behind_glass(glass, passes, seed=1):
@@ -115,6 +174,26 @@ def test_a_wall_behind_glass_shows_no_cast_of_single_passes_at_eight_passes():
     for seed in (2, 3, 4):
         single, _ = wall_behind_glass("SF11", 1, seed)
         assert cast(single) < 0.003, f"{100 * cast(single):.3f} %"
+
+
+def test_index_matched_gem_is_not_there_to_a_millionth():
+    """Lit by a world and by a wall that glows in colours, without photons: pixel by pixel the same paths, whatever stands before them."""
+
+    def image(with_gem):
+        with Scene(threads=2) as scene:
+            glow = scene.add_material(programs.emission((0.8, 0.5, 0.2)), flags=MaterialFlag.EMISSIVE)
+            scene.add_instances(scene.add_mesh(*square(0.35)), IDENTITY, [glow])
+            if with_gem:
+                solid = round_brilliant().scaled(1.0).solid
+                faces = [(f[0], f[i], f[i + 1]) for f in solid.faces for i in range(1, len(f) - 1)]
+                scene.add_instances(scene.add_mesh(solid.vertices + (0, 0, 0.7), faces), IDENTITY, [scene.add_gem(1.0)])
+            scene.set_world(World(programs.emission((0.3, 0.4, 0.5))))
+            scene.set_camera(**orthographic(0.6, looking_down(3.0)))
+            scene.commit()
+            return picture(scene, 4, samples_per_pass=8, **DEEP)
+
+    seen, bare = image(True), image(False)
+    assert np.abs(seen - bare).max() < 1e-6, f"{np.abs(seen - bare).max():.1e}"
 
 
 def test_index_matched_gem_is_not_there():

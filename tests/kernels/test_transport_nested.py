@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from opal_kernels import programs
 from opal_kernels.descriptions import Light, LightType, MaterialFlag, World
+from opal_kernels.render import Render
 from opal_kernels.scene import Scene
 from transport_scenes import IDENTITY, box, looking_down, orthographic, perspective, picture, square
 
@@ -45,6 +46,35 @@ def test_lossless_bodies_within_each_other_vanish_in_a_white_furnace(name):
         scene.commit()
         image = picture(scene, 16, size=12, samples_per_pass=16, photons_per_pass=0, max_depth=1024)
     assert image == pytest.approx(1.0, abs=0.005), f"pixels from {image.min():.4f} to {image.max():.4f}"
+
+
+def tower(count):
+    """Bodies within each other, by turns of water and of glass."""
+    steps = np.linspace(0, 1, count + 1)[:count]
+    return [(0.5 - 0.45 * s, 0.45 * s, 1 - 0.45 * s, (GLASS, WATER)[i % 2], 0) for i, s in enumerate(steps)]
+
+
+def furnace_of(bodies):
+    """(picture, statistics) of bodies in a white furnace, seen aslant."""
+    with boxes(*bodies) as scene:
+        scene.set_world(World(programs.emission()))
+        tilted = np.array([[1, 0, 0, 0.1], [0, math.cos(0.4), -math.sin(0.4), -1.1], [0, math.sin(0.4), math.cos(0.4), 3.0]])
+        scene.set_camera(**orthographic(0.8, tilted))
+        scene.commit()
+        with Render(scene, width=12, height=12, samples_per_pass=16, photons_per_pass=0, max_depth=1024) as render:
+            return render.run(8).film("COMBINED")[..., :3].astype(np.float64), render.statistics
+
+
+@pytest.mark.parametrize("count", [12, 32])
+def test_many_bodies_within_each_other_vanish_in_a_white_furnace(count):
+    image, statistics = furnace_of(tower(count))
+    assert image == pytest.approx(1.0, abs=0.01), f"pixels from {image.min():.4f} to {image.max():.4f}"
+    assert statistics["gems_passed_over"] == 0
+
+
+def test_more_bodies_within_each_other_than_a_path_keeps_account_of_are_counted():
+    _, statistics = furnace_of(tower(34))
+    assert statistics["gems_passed_over"] > 0
 
 
 def transmittance(*bodies):

@@ -283,6 +283,7 @@ class RenderStatisticsStruct(ctypes.Structure):
         ("energy_absorbed", c_double),
         ("energy_escaped", c_double),
         ("pilot_seconds", c_double),
+        ("gems_passed_over", c_int64),
     ]
 
 

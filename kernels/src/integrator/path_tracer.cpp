@@ -37,6 +37,7 @@ PathLight CameraPath::trace() {
   light_.spectral = Spectrum(0.0f);
   while (alive_ && events_ < kMaxEvents) step();
   if (keeps_layers_) finish_layers();
+  counts_.passed_over += interior_.passed_over();
   return light_;
 }
 

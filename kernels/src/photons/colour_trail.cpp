@@ -27,7 +27,8 @@ void ColourTrail::start(const Ray &arrived, const ShadingPoint &sp, const GemBou
 void ColourTrail::add(const Hit &hit, uint32_t material, const ShadingPoint &sp, const GemBoundary &gem, bool transmission,
                       float share, int32_t absorption, uint32_t ray_kind) {
   open_ = chose_alike(gem, sp, transmission, transport_);
-  if (open_) steps_.push_back({hit.instance, material, ray_kind, sp.backfacing, transmission, absorption, share, gem});
+  if (open_)
+    steps_.push_back({hit.instance, material, ray_kind, sp.backfacing, sp.smooth, transmission, absorption, share, gem});
 }
 
 bool ColourTrail::ends(const Scene &scene, const Hit &hit) const {
@@ -56,6 +57,7 @@ bool ColourTrail::follow(const Scene &scene, const Wavelengths &w, int32_t absor
       if (scene.material_index(end.hit.instance, end.hit.triangle) != step.material) return false;
       sp = scene.shading_point(end.ray, end.hit);
       if (sp.backfacing != step.backfacing) return false;
+      if (!step.smooth) sp.ns = sp.ng, sp.smooth = false;
       absorb(step.absorption, end.hit.t);
     }
     Vec3 wi;

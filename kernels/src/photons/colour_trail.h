@@ -51,8 +51,8 @@ class ColourTrail {
  private:
   struct Step {
     uint32_t instance, material, ray_kind;
-    bool backfacing, transmission;
-    int32_t absorption;  // of what the way to it leads through
+    bool backfacing, smooth, transmission;  // smooth: by its interpolated normal
+    int32_t absorption;                     // of what the way to it leads through
     float hero_share;
     GemBoundary gem;
     float survived = 0, most = 1;  // 0 without roulette

@@ -45,6 +45,12 @@ class PhotonPath {
 
   void trace() {
     if (!emit()) return;
+    follow();
+    out_.passed_over += interior_.passed_over();
+  }
+
+ private:
+  void follow() {
     out_.energy.emitted += double(flux_[0]);
     for (int events = 0; events < kMaxEvents; ++events) {
       const double before = double(flux_[0]);
@@ -59,7 +65,6 @@ class PhotonPath {
     out_.energy.absorbed += double(flux_[0]);
   }
 
- private:
   // How a photon that does not go on has ended.
   enum class End : uint8_t { Absorbed, Stored, Escaped };
   bool ended(End end) {

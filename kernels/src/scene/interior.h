@@ -13,7 +13,7 @@ namespace opal {
 
 class InteriorStack {
  public:
-  static constexpr int kCapacity = 8;
+  static constexpr int kCapacity = 32;
 
   struct Entry {
     uint32_t instance = 0, material = 0;
@@ -27,6 +27,8 @@ class InteriorStack {
 
   bool empty() const { return count_ == 0; }
   int count() const { return count_; }
+  // How often a body was entered within as many as are kept account of: it was passed over.
+  int passed_over() const { return passed_over_; }
 
   // The interior that counts, or nullptr outside of everything.
   const Entry *current() const { return best(-1); }
@@ -41,6 +43,7 @@ class InteriorStack {
 
   void enter(const Entry &entry) {
     if (count_ < kCapacity) entries_[count_++] = entry;
+    else ++passed_over_;
   }
   void leave(uint32_t instance, uint32_t material) {
     const int i = find(instance, material);
@@ -64,7 +67,7 @@ class InteriorStack {
   }
 
   Entry entries_[kCapacity];
-  int count_ = 0;
+  int count_ = 0, passed_over_ = 0;
 };
 
 inline Spectrum lookup(const SpectralTable &table, const Wavelengths &w) {
