@@ -48,6 +48,7 @@ void CameraPath::step() {
   if (hit.valid()) absorb(scene_, interior_, hit.t, w_, throughput_);
   if (escapes(scene_, ray_, hit)) entered_.leave_bodies();
   media_ = media_that_fill(scene_, entered_, interior_);
+  counts_.media_passed_over += media_.passed_over();
   if (!media_.empty()) {
     trail_.close();
     if (travel_in_medium(hit.t)) return;

@@ -98,6 +98,7 @@ class PhotonPath {
     ++out_.rays;
     if (escapes(scene_, ray_, hit)) entered_.leave_bodies();
     media_ = media_that_fill(scene_, entered_, interior_);
+    out_.media_passed_over += media_.passed_over();
     float t_end = hit.t;
     if (emitted_.reach < kInfinity && sharp_events_ + rough_events_ == 0)
       t_end = std::min(t_end, std::max(emitted_.reach - length(ray_.origin - emitted_.ray.origin), 0.0f));
