@@ -113,6 +113,8 @@ class _FinalRender:
     def _note_overlaps(self, render: Render) -> None:
         if render.statistics["gems_passed_over"]:
             self.report.add("", "more than 32 gems lie within each other: what is inside of them turns dark", lost=True)
+        if render.statistics["media_passed_over"]:
+            self.report.add("", "more than 32 media overlap: those that light comes into last are left out there", lost=True)
 
     def _refuse_what_does_not_fit(self) -> None:
         width, height = self.frame.region_size

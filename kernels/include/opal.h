@@ -454,6 +454,8 @@ typedef struct opal_render_statistics {
   double pilot_seconds; /* planning an adaptive render, before its first pass */
   /* How often a path came into a gem within 32 others, which is as many as it keeps account of: beyond, light gets lost. */
   int64_t gems_passed_over;
+  /* How often a path came into a medium within 32 others, which is as many as it keeps account of: it was passed over. */
+  int64_t media_passed_over;
 } opal_render_statistics;
 OPAL_EXPORT int32_t opal_render_get_statistics(const opal_render *render, opal_render_statistics *out);
 

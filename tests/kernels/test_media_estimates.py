@@ -127,6 +127,33 @@ def test_what_photons_carry_does_not_change_media(build):
             agrees(carry.name, found, expected, 0.01, 0.016)
 
 
+@pytest.mark.parametrize("estimate", [VolumeEstimate.POINTS, VolumeEstimate.BEAMS])
+def test_photons_of_media_have_a_count_of_their_own(estimate):
+    """Four times as many for the medium as for the floor under it: so many are left, and the picture is as bright as before."""
+    with Scene(threads=2) as scene:
+        fill(scene, (-1, -1, -1), (1, 1, 1), scene.add_medium(1.0, 0.8))
+        scene.add_instances(scene.add_mesh(*square(1.5, -1.2)), IDENTITY, [scene.add_material(programs.diffuse((0.7, 0.7, 0.7)))])
+        scene.add_light(Light(type=LightType.SUN, power=1.0, transform=TILTED))
+        scene.set_camera(**orthographic(0.45, looking_down(10.0)))
+        scene.commit()
+        settings = {"photons_carry": Carry.ALL, "volume_estimate": estimate, "volume_radius": 0.1, "radius": 0.1, "gather": 256}
+        found, counts = {}, {}
+        for apart in (0, 80_000):
+            means = []
+            for seed in range(4):
+                with Render(
+                    scene, width=16, height=16, samples_per_pass=4, photons_per_pass=20_000, volume_photons=apart, seed=seed, **settings
+                ) as render:
+                    means.append(render.run(1).film()[..., :3].mean())
+                    counts[apart] = render.statistics
+            found[apart] = np.mean(means), np.std(means, ddof=1) / 2
+    together, apart = counts[0], counts[80_000]
+    assert (together["volume_photons_emitted"], apart["volume_photons_emitted"]) == (20_000, 80_000)
+    assert apart["photons_emitted"] == together["photons_emitted"] and apart["photons_stored"] == together["photons_stored"]
+    assert apart["volume_photons_stored"] == pytest.approx(4 * together["volume_photons_stored"], rel=0.03)
+    agrees("apart", found[80_000], found[0], 0.0, 0.012)
+
+
 SIZE = 24
 
 

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Media that vary beside closed forms and quadrature (PHYSICS §5.4, 5.11, 5.12 and 5.17).
+"""Media that vary beside closed forms and quadrature (PHYSICS §5.4, 5.5, 5.11, 5.12 and 5.17).
 
 Most scenes are an absorbing or scattering box under a uniform sky of radiance 1, seen straight from above. The mean of the
-picture is compared within 4 of its own standard errors, which each test requires to be small.
+picture is compared within 4 of its own standard errors, which each test requires to be small, or, where a table says what is right,
+within a tolerance, of which the standard error may be four tenths.
 """
+
+import ctypes
 
 import numpy as np
 import pytest
@@ -11,7 +14,7 @@ from opal_kernels import binding, programs
 from opal_kernels.descriptions import Density, EmissionDensity, MaterialFlag, Phase, PhaseKind, World
 from opal_kernels.optics import media, phase_functions, uplift
 from opal_kernels.scene import Scene
-from transport_scenes import IDENTITY, box, looking_down, orthographic, perspective, picture, square
+from transport_scenes import IDENTITY, box, looking_down, looking_up, orthographic, perspective, picture, placed, square
 
 WIDE = 400.0  # of slabs, in units of their depth
 
@@ -61,6 +64,11 @@ def holds(mean, error, expected, largest_error):
     assert np.all(np.abs(mean - expected) < allowed), f"{mean} ± {error}, expected {expected}"
 
 
+def is_within(mean, error, expected, tolerance):
+    assert np.max(error) < 0.4 * tolerance, f"too noisy to tell: {error}, for a tolerance of {tolerance:.2g}"
+    assert np.all(np.abs(mean - expected) < tolerance), f"{mean} ± {error}, expected {expected} ± {tolerance:.2g}"
+
+
 @pytest.mark.parametrize("way", WAYS)
 def test_a_constant_density_lets_through_what_beer_and_lambert_say(way):
     with Scene(threads=2) as scene:
@@ -79,25 +87,79 @@ def test_a_finite_slab_reflects_what_the_radiative_transfer_tables_say(way):
         holds(*mean_and_error(scene, passes=2), 0.6911, 0.004)
 
 
-@pytest.mark.parametrize("way", ["closed form", "grid"])
-@pytest.mark.parametrize("albedo, expected", [(0.5, 0.115226), (0.9, 0.414947), (0.999, 0.912845)])
-def test_a_half_space_reflects_chandrasekhars_plane_albedo(way, albedo, expected):
-    """1 - H(1) sqrt(1 - albedo) (PHYSICS §5.11): as many scatterings as it takes."""
+@pytest.mark.parametrize("depth, reflected, transmitted", [(1.0, 0.3411, 0.6589), (4.0, 0.6911, 0.3089)])
+def test_slabs_reflect_and_transmit(depth, reflected, transmitted):
+    """The same for other depths; what comes through is seen from between the slab and a black lid, by the light below it."""
+    with Scene(threads=2) as scene:
+        filled_box(scene, (-WIDE, -WIDE, 0), (WIDE, WIDE, 1), depth, 1.0)
+        black_floor(scene, -0.01)
+        scene.set_world(World(programs.emission()))
+        is_within(*mean_and_error(scene, passes=2), reflected, 0.004)
+    with Scene(threads=2) as scene:
+        filled_box(scene, (-WIDE, -WIDE, 0), (WIDE, WIDE, 1), depth, 1.0)
+        black_floor(scene, 2.0)
+        scene.set_world(World(programs.emission()))
+        is_within(*mean_and_error(scene, orthographic(0.4, looking_down(1.5)), passes=2), transmitted, 0.004)
+
+
+@pytest.mark.parametrize(
+    "way, albedo, expected, passes, tolerance",
+    [
+        ("closed form", 0.5, 0.115226, 4, 0.003),
+        ("closed form", 0.9, 0.414947, 6, 0.005),
+        ("closed form", 0.999, 0.912845, 1, 0.005),
+        ("grid", 0.5, 0.115226, 2, 0.008),
+        ("grid", 0.9, 0.414947, 2, 0.008),
+    ],
+)
+def test_a_half_space_reflects_chandrasekhars_plane_albedo(way, albedo, expected, passes, tolerance):
+    """1 - H(1) sqrt(1 - albedo) (PHYSICS §5.11), within a share of itself: as many scatterings as it takes."""
     with Scene(threads=2) as scene:
         filled_box(scene, (-WIDE, -WIDE, -1), (WIDE, WIDE, 1), 300.0, albedo, way)
         scene.set_world(World(programs.emission()))
-        holds(*mean_and_error(scene, passes=1, size=8), expected, 0.008)
+        is_within(*mean_and_error(scene, passes=passes), expected, tolerance * expected)
     assert media.half_space_albedo(1.0, albedo) == pytest.approx(expected, abs=2e-5)
 
 
 @pytest.mark.parametrize("way", WAYS)
 def test_single_scattering_of_the_sun_in_a_slab(way):
-    """Without bounces: L = albedo F f mu0/(mu + mu0) (1 - exp(-depth (1/mu + 1/mu0))) with irradiance F (PHYSICS §5.4)."""
+    """Without bounces, reflected and transmitted (PHYSICS §5.4): 0.03440392 and 0.02927492 of the irradiance, within 0.5 %."""
+    reflected, transmitted = media.single_scattering_slab(1.0, 1.0, 1.0)
+    exact = way in ("closed form", "below the base height")
+    for camera, expected in ((looking_down(10.0), reflected), (looking_up(-5.0), transmitted)):
+        with Scene(threads=2) as scene:
+            filled_box(scene, (-WIDE, -WIDE, 0), (WIDE, WIDE, 1), 1.0, 0.8, way)
+            scene.add_light(type=2, power=1.0, transform=looking_down(5.0))
+            mean, error = mean_and_error(scene, orthographic(0.4, camera), passes=1 if exact else 8, max_depth=0)
+            is_within(mean / (0.8 * expected), error / (0.8 * expected), 1.0, 0.001 if exact else 0.005)
+
+
+@pytest.mark.parametrize(
+    "distance, extinction, expected", [(1.0, 0.1, 0.12718907), (1.0, 0.5, 0.03714498), (0.1, 0.1, 1.93599726), (0.1, 0.5, 0.80336020)]
+)
+def test_a_ray_gathers_airlight_of_a_point_lamp(distance, extinction, expected):
+    """A lamp of intensity 1 W/sr beside a ray of 4 m, in its middle: radiance per scattering coefficient (PHYSICS §5.5)."""
     with Scene(threads=2) as scene:
-        filled_box(scene, (-WIDE, -WIDE, 0), (WIDE, WIDE, 1), 1.0, 0.8, way)
-        scene.add_light(type=2, power=1.0, transform=looking_down(5.0))
-        mean, error = mean_and_error(scene, passes=4, max_depth=0)
-        holds(mean / 0.8, error / 0.8, media.single_scattering_slab(1.0, 1.0, 1.0)[0], 0.0005)
+        filled_box(scene, (-50, -50, -2), (50, 50, 2), extinction, 1.0)
+        scene.add_light(type=0, power=4 * np.pi, radius=0.0, transform=placed(distance)[:3])
+        mean, error = mean_and_error(scene, orthographic(1e-4, looking_down(2 - 1e-6)), passes=2, size=8, max_depth=0)
+        is_within(mean / extinction / expected, error / extinction / expected, 1.0, 0.002)
+
+
+def test_paths_in_dense_white_media_leave_no_specks():
+    """Albedo 1, 200 free paths across, lit by a sun and by the sky: of 1600 pixels with 4 samples the brightest has not 5 times the
+    median. Were the longest chains cut earlier, those that go on would weigh too much: 6 to 10 times."""
+    for suns in (True, False):
+        with Scene(threads=2) as scene:
+            filled_box(scene, (-1, -1, -1), (1, 1, 1), 100.0, 1.0)
+            if suns:
+                scene.add_light(type=2, power=np.pi, transform=looking_down(5.0))
+            else:
+                scene.set_world(World(programs.emission()))
+            scene.set_camera(**orthographic(0.9, looking_down(10.0)))
+            scene.commit()
+            light = picture(scene, 1, 40, samples_per_pass=4, photons_per_pass=0, max_depth=64)[..., 1]
+            assert light.max() < 5 * np.median(light), f"{light.max():.2f}, median {np.median(light):.2f}"
 
 
 @pytest.mark.parametrize("way", WAYS)
@@ -170,8 +232,8 @@ def test_random_sparse_grids_let_through_what_quadrature_says(seed):
     assert np.abs(deviation).max() < 5.5 and deviation.std() < 1.15
 
 
-def test_chromatic_extinction_brings_no_colour_noise():
-    """Through a grid with extinction that triples over the spectrum each channel is as its own quadrature says."""
+def test_chromatic_extinction_is_right_in_each_channel():
+    """Through a grid with extinction that triples over the spectrum each channel is as the closed form says."""
     extinction = np.linspace(0.5, 1.5, 471)
     means = {}
     for way in ("closed form", "grid"):
@@ -179,11 +241,73 @@ def test_chromatic_extinction_brings_no_colour_noise():
             filled_box(scene, (-1, -1, -1), (1, 1, 1), extinction, way=way)
             scene.set_world(World(programs.emission()))
             means[way] = mean_and_error(scene, passes=2)
-    difference = means["grid"][0] - means["closed form"][0]
     error = np.hypot(means["grid"][1], means["closed form"][1])
-    assert error.max() < 0.004
-    assert np.all(np.abs(difference) < 4 * np.maximum(error, 0.0013)), f"{difference} ± {error}"
+    holds(means["grid"][0], error, means["closed form"][0], 0.004)
     assert means["closed form"][0][2] > 1.3 * means["closed form"][0][0], "blue is let through, red is not"
+
+
+@pytest.mark.parametrize("way", ["closed form", "grid"])
+def test_chromatic_extinction_brings_no_colour_noise(way):
+    """Wavelengths share each path, so no channel is much noisier than in a grey medium of the mean extinction.
+
+    Were they weighted by the hero alone, paths through this depth would weigh up to exp(2) = 7 in others."""
+
+    def noise(extinction):
+        with Scene(threads=2) as scene:
+            filled_box(scene, (-1, -1, -1), (1, 1, 1), extinction, 0.9, way=way)
+            scene.set_world(World(programs.emission()))
+            scene.set_camera(**orthographic(0.4, looking_down(10.0)))
+            scene.commit()
+            image = picture(scene, 1, 32, samples_per_pass=16, photons_per_pass=0, max_depth=64)
+        return (image / image.mean(axis=(0, 1))).std(axis=(0, 1))
+
+    grey, coloured = noise(1.0), noise(np.linspace(0.5, 1.5, 471))
+    assert np.all(coloured < 1.4 * grey), f"noise of the channels {coloured}, in a grey medium {grey}"
+
+
+def steps_through(scene, medium, rays, length):
+    """(intervals, tentative collisions) of rays (n, 2, 3), as `opal_test_medium_steps` counts them."""
+    rays = np.ascontiguousarray(np.swapaxes(rays, 0, 1), np.float32)
+    pointers = [a.ctypes.data_as(ctypes.POINTER(ctypes.c_float)) for a in rays]
+    found = ctypes.c_int64(), ctypes.c_int64()
+    call = binding.library().opal_test_medium_steps
+    call.restype = ctypes.c_int32
+    counts = [ctypes.byref(f) for f in found]
+    handle, number, n = ctypes.c_void_p(scene.handle), ctypes.c_int32(medium), ctypes.c_int64(rays.shape[1])
+    assert call(handle, number, n, *pointers, ctypes.c_float(length), *counts) == 0
+    return found[0].value, found[1].value
+
+
+def test_a_cloud_that_is_99_percent_empty_costs_what_is_filled():
+    """256 voxels along each axis, a cube of 55 of them filled: density is read as often as in a grid of that cube alone.
+
+    Rays in all directions through the cloud; counted, not timed."""
+    random = np.random.default_rng(5)
+    ends = random.uniform(0, 256, (2000, 2, 3))
+    direction = ends[:, 1] - ends[:, 0]
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    rays = np.stack([ends[:, 0] - 500 * direction, direction], axis=1)
+    filled, first = np.full((55, 55, 55), 0.3), 96  # at the bounds of bricks
+    counts = {}
+    for name, size, offset in (("sparse", 256, first), ("alone", 55, 0), ("dense", 256, None)):
+        with Scene(threads=1) as scene:
+            transform = np.eye(4)
+            if name == "alone":
+                transform[:3, 3] = first
+            grid = binding.scene_add_grid(scene.handle, (size,) * 3, transform)
+            if offset is not None:
+                binding.scene_set_grid_block(scene.handle, grid, filled, (offset,) * 3)
+            else:
+                everywhere = np.full((256, 256, 256), 1e-3, np.float32)
+                everywhere[first : first + 55, first : first + 55, first : first + 55] = filled
+                binding.scene_set_grid_block(scene.handle, grid, everywhere)
+            medium = scene.add_medium(1.0, density=Density.GRID, density_grid=1 + grid)
+            scene.commit()
+            counts[name] = steps_through(scene, medium, rays, 1000.0)
+    assert counts["alone"][1] > 1000, counts
+    assert counts["sparse"][1] < 1.1 * counts["alone"][1], counts
+    assert counts["sparse"][0] < 1.1 * counts["alone"][0], counts
+    assert counts["dense"][0] > 3 * counts["sparse"][0], counts
 
 
 def test_emission_without_extinction_adds_up_along_the_ray():

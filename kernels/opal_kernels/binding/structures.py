@@ -284,6 +284,7 @@ class RenderStatisticsStruct(ctypes.Structure):
         ("energy_escaped", c_double),
         ("pilot_seconds", c_double),
         ("gems_passed_over", c_int64),
+        ("media_passed_over", c_int64),
     ]
 
 

@@ -119,20 +119,24 @@ struct Frame {
   constexpr Vec3 to_world(const Vec3 &v) const { return x * v.x + y * v.y + z * v.z; }
 };
 
-// Where faces coincide: which instances a path has crossed there already (scene/contact.h).
+// Where faces coincide: which of them a path has crossed there already (scene/contact.h). Faces of one instance that look the
+// same way are one, and those that look the other way another: cubes of one mesh that touch.
 struct Contact {
-  static constexpr int kMost = 4;
-  uint32_t crossed[kMost] = {};
+  static constexpr int kMost = 16;
+  uint32_t crossed[kMost] = {};  // as face() numbers them, met forwards
   int count = 0;
-  bool backward = false;  // after a reflection: what was crossed is met again, and nothing else
+  bool backward = false;  // after a reflection: what was crossed is met again from behind, and nothing else
   float until = 0;        // up to this distance along the ray; 0: no contact
 
-  bool contains(uint32_t instance) const {
+  // back: the ray meets it from behind.
+  uint32_t face(uint32_t instance, bool back) const { return instance << 1 | uint32_t(back != backward); }
+  int find(uint32_t instance, bool back) const {
+    const uint32_t wanted = face(instance, back);
     for (int i = 0; i < count; ++i)
-      if (crossed[i] == instance) return true;
-    return false;
+      if (crossed[i] == wanted) return i;
+    return -1;
   }
-  bool meets(uint32_t instance) const { return contains(instance) == backward; }
+  bool meets(uint32_t instance, bool back) const { return (find(instance, back) >= 0) == backward; }
 };
 
 struct Ray {
@@ -148,6 +152,9 @@ struct Bounds {
   void extend(const Vec3 &p) { low = min(low, p), high = max(high, p); }
   void extend(const Bounds &b) { low = min(low, b.low), high = max(high, b.high); }
   bool empty() const { return !(low.x <= high.x); }
+  bool contains(const Vec3 &p) const {
+    return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y && p.z >= low.z && p.z <= high.z;
+  }
   Vec3 centre() const { return (low + high) * 0.5f; }
   float radius() const { return empty() ? 0.0f : 0.5f * length(high - low); }
 };

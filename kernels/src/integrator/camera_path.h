@@ -27,7 +27,7 @@ inline constexpr uint32_t kGuidedEvents =
 inline constexpr float kGuidedPart = 0.25f;
 // Of the chance to meet a medium that varies: a lesser one makes it a thin one.
 inline constexpr float kThin = 0.7f;
-inline constexpr uint32_t kMaxEvents = 32768;  // nothing physical gets there; guards against loops of free passes
+inline constexpr uint32_t kMostFreePasses = 32768;  // nothing physical gets there; guards against loops
 
 // Where the path last scattered, as the light sampler saw it.
 struct LastEvent {
@@ -89,8 +89,8 @@ class CameraPath {
   // The last ray of a path that looks for lamps only: on through what is transparent.
   void pass_or_stop();
   void sample_direct(uint32_t dimension);
-  // What of a light sample arrives; false: nothing.
-  bool passes(const Vec3 &origin, const LightSample &sample, uint32_t dimension, Passage &through);
+  // What of a light sample arrives along a ray that starts so; false: nothing.
+  bool passes(Ray shadow, const LightSample &sample, uint32_t dimension, Passage &through);
 
   // ---- Wavelengths that follow ----
   // Notes what a gem has done to the path, or, what it was being no polished gem, that nothing follows any more.

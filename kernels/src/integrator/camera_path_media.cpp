@@ -252,7 +252,7 @@ void CameraPath::add_connected(Spectrum light, const LightSample &sample, const 
                                const Spectrum &path, uint32_t dimension) {
   if (light.is_zero() || !light.is_finite()) return;
   Passage passed;
-  if (!passes(p, sample, dimension, passed)) return;
+  if (!passes({p, sample.wi, 0, kInfinity, ray_.time}, sample, dimension, passed)) return;
   const Spectrum pdf = reached * (passed.light_pdf * sample.pdf + path * passed.path_pdf);
   light *= uplift(passed.surfaces, w_) * passed.medium / pdf.average();
   add_scattered(light, false);
@@ -291,7 +291,7 @@ void CameraPath::gather_along(const StratifiedMedia &media, float t_end, uint32_
       throughput_ * through * here.scattering * here.scattered(w_, -sample.wi, -ray_.direction, filter()) * sample.radiance;
   if (contribution.is_zero() || !contribution.is_finite()) return;
   Passage passed;
-  if (!passes(p, sample, dimension + kDimMediumLight, passed)) return;
+  if (!passes({p, sample.wi, 0, kInfinity, ray_.time}, sample, dimension + kDimMediumLight, passed)) return;
   Spectrum pdf = path_pdf_ * passed.light_pdf * (distance_pdf * sample.pdf);
   if (!sample.dirac) pdf += path_pdf_ * here.extinction * through * phase * passed.path_pdf;
   contribution *= uplift(passed.surfaces, w_) * passed.medium / pdf.average();

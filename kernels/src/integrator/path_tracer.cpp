@@ -35,9 +35,10 @@ CameraPath::CameraPath(const PassContext &pass, uint32_t x, uint32_t y, uint32_t
 PathLight CameraPath::trace() {
   light_.wavelength_index = index_;
   light_.spectral = Spectrum(0.0f);
-  while (alive_ && events_ < kMaxEvents) step();
+  while (alive_ && events_ - bounces_ < kMostFreePasses) step();  // roulette ends real events
   if (keeps_layers_) finish_layers();
   counts_.passed_over += interior_.passed_over();
+  counts_.media_passed_over += entered_.passed_over();
   return light_;
 }
 
@@ -45,7 +46,9 @@ void CameraPath::step() {
   const Hit hit = hit_ = next_hit(scene_, ray_, ray_kind_);
   ++counts_.path;
   if (hit.valid()) absorb(scene_, interior_, hit.t, w_, throughput_);
+  if (escapes(scene_, ray_, hit)) entered_.leave_bodies();
   media_ = media_that_fill(scene_, entered_, interior_);
+  counts_.media_passed_over += media_.passed_over();
   if (!media_.empty()) {
     trail_.close();
     if (travel_in_medium(hit.t)) return;
@@ -274,10 +277,14 @@ void CameraPath::update_path_pdf(const BsdfSample &sample) {
 void CameraPath::roulette(float u, float promise) {
   if (bounces_ < kRouletteStart) return;
   const float q = clamp((throughput_.max() * eta_scale_ * promise) / path_pdf_.average(), 0.0f, 1.0f);
-  // Where nothing is lost, a small chance to stop keeps the longest chains finite.
+  // Where nothing is lost, a small chance to stop keeps the longest chains finite. Those that go on weigh the more: of n events
+  // exp(n / 10000) in bodies of media, which most paths leave by themselves long before.
   // In the world's own medium, which has no end, paths that absorb nothing would wander away for ever.
-  const bool endless = media_.count() == 1 && media_[0].instance == ~0u && rough_in_medium_;
-  const float most = endless && bounces_ > 32 ? 0.95f : bounces_ > 256 ? (rough_in_medium_ ? 0.999f : 0.98f) : 1.0f;
+  const bool endless = media_.count() == 1 && media_[0].instance == MediumSet::kOfWorld && rough_in_medium_;
+  float most = 1;
+  if (endless) most = bounces_ > 32 ? 0.95f : 1.0f;
+  else if (rough_in_medium_) most = bounces_ > 4096 ? 0.9999f : 1.0f;
+  else if (bounces_ > 256) most = 0.98f;
   const float survive = std::min(q, most);
   if (!(u < survive)) {
     alive_ = false;
@@ -326,7 +333,7 @@ void CameraPath::sample_direct(uint32_t dimension) {
   Spectrum contribution = throughput_ * f * sample.radiance;
   if (contribution.is_zero() || !contribution.is_finite()) return;
   Passage through;
-  if (!passes(offset_origin(sp, sample.wi), sample, dimension + kDimLight, through)) return;
+  if (!passes(leave_surface(scene_, ray_, sp, sample.wi), sample, dimension + kDimLight, through)) return;
   Spectrum pdf = path_pdf_ * through.light_pdf * sample.pdf;
   if (!sample.dirac) {
     MediumHere here;
@@ -339,9 +346,9 @@ void CameraPath::sample_direct(uint32_t dimension) {
   layers_ = before;
 }
 
-bool CameraPath::passes(const Vec3 &origin, const LightSample &sample, uint32_t dimension, Passage &through) {
+bool CameraPath::passes(Ray shadow, const LightSample &sample, uint32_t dimension, Passage &through) {
   if (!sample.cast_shadow) return true;
-  const Ray shadow{origin, sample.wi, 0, std::isfinite(sample.distance) ? sample.distance * (1 - 1e-5f) : kInfinity, ray_.time};
+  shadow.t_max = std::isfinite(sample.distance) ? sample.distance * (1 - 1e-5f) : kInfinity;
   ++counts_.shadow;
   through = passage(scene_, shadow, entered_, interior_, settings_.transparent_depth, w_, RandomStream(sampler_, dimension));
   return !through.blocked();

@@ -27,6 +27,7 @@ struct PathLight {
 
 struct RayCounts {
   int64_t camera = 0, path = 0, shadow = 0, passed_over = 0;
+  int64_t media_passed_over = 0;
 };
 
 // sample: which of the pixel's in the whole render.

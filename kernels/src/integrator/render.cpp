@@ -85,6 +85,7 @@ bool Render::trace_photons_of(PassContext &pass, PassBuffer &buffer, SplatSums &
       if (buffer.has(OPAL_PASS_SPECTRAL)) buffer.values[OPAL_PASS_SPECTRAL][slot] += value;
     statistics_.path_rays += chunk.rays;
     statistics_.gems_passed_over += chunk.passed_over;
+    statistics_.media_passed_over += chunk.media_passed_over;
     statistics_.splats += int64_t(chunk.splats.size());
     statistics_.energy_emitted += chunk.energy.emitted;
     statistics_.energy_stored += chunk.energy.stored;
@@ -140,7 +141,7 @@ bool Render::trace_camera_of(const PassContext &pass, PassBuffer &buffer, const 
   const float filter = scene_.camera.polarizer ? 0.5f : 1.0f;  // a polarising filter takes half of unpolarised light
   const float exposure = settings_.exposure * filter;
   const float from = progress_;
-  std::atomic<int64_t> done{0}, camera{0}, path{0}, shadow{0}, passed_over{0};
+  std::atomic<int64_t> done{0}, camera{0}, path{0}, shadow{0}, passed_over{0}, media_passed_over{0};
 
   const auto render_pixel = [&](int x, int y, RayCounts &counts) {
     const size_t pixel = size_t(y) * size_t(w) + size_t(x);
@@ -206,6 +207,7 @@ bool Render::trace_camera_of(const PassContext &pass, PassBuffer &buffer, const 
       for (int x = x0; x < std::min(w, x0 + kTile); ++x) render_pixel(x, y, counts);
     }
     camera += counts.camera, path += counts.path, shadow += counts.shadow, passed_over += counts.passed_over;
+    media_passed_over += counts.media_passed_over;
     progress_ = from + (1 - from) * float(++done) / float(int64_t(tiles_x) * tiles_y);
   });
   if (!complete || cancelled_) return false;
@@ -213,6 +215,7 @@ bool Render::trace_camera_of(const PassContext &pass, PassBuffer &buffer, const 
   statistics_.path_rays += path;
   statistics_.shadow_rays += shadow;
   statistics_.gems_passed_over += passed_over;
+  statistics_.media_passed_over += media_passed_over;
   statistics_.camera_seconds += start.seconds();
   return true;
 }

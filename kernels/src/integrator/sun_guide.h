@@ -20,7 +20,7 @@ class SunGuide {
   SunGuide(const LightTables *lights, const MediumHere &here, const Wavelengths &w, float most) {
     if (!lights || lights->suns.empty() || !here.scatters() || !(most > 0)) return;
     float forward = 0;
-    for (int i = 0; i < here.n; ++i) forward = std::max(forward, here.phase[i]->value(w.nm[0], 1));
+    for (const MediumHere::Scatterer &part : here.parts) forward = std::max(forward, part.phase->value(w.nm[0], 1));
     if (forward < kPeaked / (4 * kPi) || forward > kBeam / (4 * kPi)) return;
     lights_ = lights, here_ = &here, part_ = most * lights->sun_share;
   }

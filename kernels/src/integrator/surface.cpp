@@ -3,6 +3,7 @@
 
 #include "core/sampler.h"
 #include "media/stratified.h"
+#include "scene/contact.h"
 
 namespace opal {
 namespace {
@@ -135,7 +136,8 @@ Passage passage(const Scene &scene, const Ray &ray, MediumSet entered, const Int
     return result;
   }
   for (int layer = 0;;) {
-    const Hit hit = scene.intersect(rest, OPAL_RAY_SHADOW);
+    const Hit hit = next_hit(scene, rest, OPAL_RAY_SHADOW);
+    if (escapes(scene, rest, hit)) entered.leave_bodies();
     attenuate(std::min(hit.t, rest.t_max));
     if (!hit.valid()) return result;
     const Material &material = scene.material_at(hit);
@@ -150,9 +152,10 @@ Passage passage(const Scene &scene, const Ray &ray, MediumSet entered, const Int
       if (result.blocked()) return result;
     }
     cross_medium(material, sp, entered);
-    rest.origin = offset_origin(sp, rest.direction);
-    rest.t_max -= hit.t;
-    if (!(rest.t_max > 0)) return result;
+    const float left = rest.t_max - hit.t;
+    if (!(left > 0)) return result;
+    rest = leave_surface(scene, rest, sp, rest.direction);
+    rest.t_max = left;
   }
 }
 

@@ -2,12 +2,11 @@
 // A participating medium, and the set of media that a path is in. Where media overlap their coefficients add.
 #pragma once
 
+#include "core/slots.h"
 #include "core/spectrum.h"
 #include "media/density.h"
 #include "media/phase_function.h"
 #include "opal.h"
-
-#include <array>
 
 namespace opal {
 
@@ -35,31 +34,39 @@ struct Medium {
 // (`also`) is added by media_that_fill.
 class MediumSet {
  public:
-  static constexpr int kCapacity = 8;
+  static constexpr int kCapacity = 32;
+  static constexpr uint32_t kOfWorld = ~0u;  // in place of an instance
   struct Entry {
-    uint32_t instance = 0;
-    int medium = 0;
+    uint32_t instance;
+    int medium;
   };
 
-  bool empty() const { return count_ == 0; }
-  int count() const { return count_; }
-  const Entry &operator[](int i) const { return entries_[size_t(i)]; }
+  bool empty() const { return entries_.empty(); }
+  int count() const { return entries_.count(); }
+  const Entry &operator[](int i) const { return entries_[i]; }
+  // How often a medium was entered within as many as are kept account of: it was passed over.
+  int passed_over() const { return passed_over_; }
 
   void enter(uint32_t instance, int medium) {
-    if (count_ < kCapacity) entries_[size_t(count_++)] = {instance, medium};
+    if (!entries_.full()) entries_.add(instance, medium);
+    else ++passed_over_;
   }
   void leave(uint32_t instance, int medium) {
-    for (int i = count_ - 1; i >= 0; --i) {
-      if (entries_[size_t(i)].instance != instance || entries_[size_t(i)].medium != medium) continue;
-      for (int k = i; k + 1 < count_; ++k) entries_[size_t(k)] = entries_[size_t(k) + 1];
-      --count_;
-      return;
-    }
+    for (int i = count() - 1; i >= 0; --i)
+      if (entries_[i].instance == instance && entries_[i].medium == medium) {
+        entries_.remove(i);
+        return;
+      }
+  }
+  // All that have an end.
+  void leave_bodies() {
+    for (int i = count() - 1; i >= 0; --i)
+      if (entries_[i].instance != kOfWorld) entries_.remove(i);
   }
 
  private:
-  std::array<Entry, kCapacity> entries_;
-  int count_ = 0;
+  Slots<Entry, kCapacity> entries_;
+  int passed_over_ = 0;
 };
 
 }  // namespace opal

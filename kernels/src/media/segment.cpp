@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "media/segment.h"
 
+#include "scene/contact.h"
+
 #include <algorithm>
 
 namespace opal {
@@ -20,10 +22,8 @@ MediumHere medium_here(const Scene &scene, const MediumSet &set, const Wavelengt
     const Spectrum scattering = table(medium.scattering);
     if (scattering.is_zero()) continue;
     here.scattering += scattering;
-    if (each) each[i].part = here.n;
-    here.part[here.n] = scattering;
-    here.layer[here.n] = medium.layer;
-    here.phase[here.n++] = medium.phase >= 0 ? &scene.phases[size_t(medium.phase)] : &kIsotropic;
+    if (each) each[i].part = here.parts.count();
+    here.parts.add(medium.phase >= 0 ? &scene.phases[size_t(medium.phase)] : &kIsotropic, scattering, medium.layer);
   }
   return here;
 }
@@ -35,35 +35,36 @@ bool any_varies(const Scene &scene, const MediumSet &set) {
 }
 
 Spectrum MediumHere::phase_value(const Wavelengths &w, float cosine) const {
-  if (n == 1) return phase[0]->value(w, cosine);
+  if (parts.count() == 1) return parts[0].phase->value(w, cosine);
   Spectrum sum(0.0f);
-  for (int i = 0; i < n; ++i) sum += part[i] * phase[i]->value(w, cosine);
+  for (const Scatterer &part : parts) sum += part.scattering * part.phase->value(w, cosine);
   for (int k = 0; k < kWavelengths; ++k) sum[k] = scattering[k] > 0 ? sum[k] / scattering[k] : 0.0f;
   return sum;
 }
 
 Spectrum MediumHere::scattered(const Wavelengths &w, const Vec3 &light, const Vec3 &onward, const Polariser *filter) const {
-  if (n == 1) return phase[0]->scattered(w, light, onward, filter);
+  if (parts.count() == 1) return parts[0].phase->scattered(w, light, onward, filter);
   Spectrum sum(0.0f);
-  for (int i = 0; i < n; ++i) sum += part[i] * phase[i]->scattered(w, light, onward, filter);
+  for (const Scatterer &part : parts) sum += part.scattering * part.phase->scattered(w, light, onward, filter);
   for (int k = 0; k < kWavelengths; ++k) sum[k] = scattering[k] > 0 ? sum[k] / scattering[k] : 0.0f;
   return sum;
 }
 
 int MediumHere::layer_of(const Wavelengths &w, float cosine) const {
-  if (n == 0) return any_layer;
-  if (n == 1) return layer[0];
+  if (parts.empty()) return any_layer;
+  if (parts.count() == 1) return parts[0].layer;
   float light[3] = {};
-  for (int i = 0; i < n; ++i) light[layer[i]] += (part[i] * phase[i]->value(w, cosine)).sum();
+  for (const Scatterer &part : parts) light[part.layer] += (part.scattering * part.phase->value(w, cosine)).sum();
   return int(std::max_element(light, light + 3) - light);
 }
 
 Vec3 MediumHere::sample_phase(const Wavelengths &w, const Vec3 &forward, float pick, Vec2 u, float &density) const {
   int chosen = 0;
+  const int n = parts.count();
   if (n > 1) {
     float below = 0;
     for (int i = 0; i < n; ++i) {
-      const float share = part[i][0] / scattering[0];
+      const float share = parts[i].scattering[0] / scattering[0];
       if (pick < below + share || i == n - 1) {
         pick = saturate((pick - below) / std::max(share, 1e-9f));
         chosen = i;
@@ -72,7 +73,7 @@ Vec3 MediumHere::sample_phase(const Wavelengths &w, const Vec3 &forward, float p
       below += share;
     }
   }
-  const Vec3 direction = phase[chosen]->sample(w.nm[0], forward, std::min(pick, 0x1.fffffep-1f), u, density);
+  const Vec3 direction = parts[chosen].phase->sample(w.nm[0], forward, std::min(pick, 0x1.fffffep-1f), u, density);
   if (n > 1) density = phase_value(w, dot(forward, direction))[0];
   return direction;
 }
@@ -101,11 +102,11 @@ MediumSet media_that_fill(const Scene &scene, const MediumSet &entered, const In
 MediumSet media_at(const Scene &scene, const Vec3 &p) {
   MediumSet entered;  // boundaries of what lies further along the ray
   MediumSet result;
-  if (scene.world_medium >= 0) result.enter(~0u, scene.world_medium);
+  if (scene.world_medium >= 0) result.enter(MediumSet::kOfWorld, scene.world_medium);
   if (!scene.any_medium) return result;
   Ray ray{p, normalize(Vec3{0.3017f, 0.5211f, 0.7984f})};
   for (int i = 0; i < 256; ++i) {
-    const Hit hit = scene.intersect(ray, ~0u);
+    const Hit hit = next_hit(scene, ray, ~0u);
     if (!hit.valid()) break;
     const ShadingPoint sp = scene.shading_point(ray, hit);
     const int medium = scene.material_at(hit).medium;
@@ -118,7 +119,7 @@ MediumSet media_at(const Scene &scene, const Vec3 &p) {
         if (entered.count() == before) result.enter(sp.instance_index, medium);
       }
     }
-    ray.origin = offset_origin(sp, ray.direction);
+    ray = leave_surface(scene, ray, sp, ray.direction);
   }
   return result;
 }

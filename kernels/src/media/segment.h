@@ -13,10 +13,12 @@ namespace opal {
 struct MediumHere {
   Spectrum extinction{0.0f}, scattering{0.0f}, emission{0.0f};
   Spectrum replaced{0.0f};  // of the extinction, by media that the layers' base leaves out
-  int n = 0;
-  const PhaseFunction *phase[MediumSet::kCapacity] = {};
-  Spectrum part[MediumSet::kCapacity];       // of the scattering, by medium
-  uint8_t layer[MediumSet::kCapacity] = {};  // OPAL_MEDIUM_LAYER_*, by medium
+  struct Scatterer {        // one of the media
+    const PhaseFunction *phase;
+    Spectrum scattering;
+    uint8_t layer;  // OPAL_MEDIUM_LAYER_*
+  };
+  Slots<Scatterer, MediumSet::kCapacity> parts;
 
   // The phase functions' mixture, at every wavelength: what sample_phase samples.
   Spectrum phase_value(const Wavelengths &w, float cosine) const;
@@ -32,8 +34,8 @@ struct MediumHere {
 
 // What one of several media adds.
 struct OneMedium {
-  Spectrum extinction{0.0f};
-  int part = -1;  // of MediumHere's; -1: it does not scatter
+  Spectrum extinction;
+  int part;  // of MediumHere's; -1: it does not scatter
 };
 
 // Of homogeneous media: the same everywhere. `each`, if given, takes what each adds, in the set's order.
@@ -49,6 +51,12 @@ inline void cross_medium(const Material &material, const ShadingPoint &sp, Mediu
   if (material.medium < 0) return;
   if (sp.backfacing) set.leave(sp.instance_index, material.medium);
   else set.enter(sp.instance_index, material.medium);
+}
+
+// Whether a ray meets nothing more on its way out of the scene: it is then in no body, though it may not have been seen to
+// leave one, through a hole or an edge's rounding.
+inline bool escapes(const Scene &scene, const Ray &ray, const Hit &hit) {
+  return !hit.valid() && (!std::isfinite(ray.t_max) || !scene.bounds.contains(ray.origin + ray.direction * ray.t_max));
 }
 
 // Of the media whose boundaries a path has entered, those that are there, with what each brings along. A solid or liquid leaves

@@ -70,13 +70,12 @@ bool StratifiedMedia::holds(const Scene &scene, const MediumSet &set) {
   return true;
 }
 
-StratifiedMedia::StratifiedMedia(const Scene &scene, const MediumSet &set, const Wavelengths &w, const Ray &ray)
-    : n_(set.count()) {
+StratifiedMedia::StratifiedMedia(const Scene &scene, const MediumSet &set, const Wavelengths &w, const Ray &ray) {
   OneMedium each[MediumSet::kCapacity];
   full_ = medium_here(scene, set, w, each);
-  for (int i = 0; i < n_; ++i) {
+  for (int i = 0; i < set.count(); ++i) {
     const Medium &medium = scene.media[size_t(set[i].medium)];
-    Part &part = parts_[i];
+    Part &part = parts_.add();
     part.medium = each[i];
     part.mean = each[i].extinction.average();
     part.replaced = medium.layer != OPAL_MEDIUM_LAYER_BASE;
@@ -88,7 +87,7 @@ StratifiedMedia::StratifiedMedia(const Scene &scene, const MediumSet &set, const
       origin = to_object.point(origin), direction = to_object.vector(direction);
     }
     part.profile = HeightProfile(medium.density, origin, direction);
-    if (set[i].instance != ~0u) continue;
+    if (set[i].instance != MediumSet::kOfWorld) continue;
     const float to_floor = (scene.world_floor - origin.z) / direction.z;
     if (direction.z > 0) part.first = std::max(0.0f, to_floor);
     else if (direction.z < 0) part.last = to_floor;
@@ -100,14 +99,13 @@ const MediumHere &StratifiedMedia::at(float t, MediumHere &scratch) const {
   if (homogeneous_) return full_;
   scratch = full_;
   scratch.extinction = scratch.scattering = scratch.replaced = Spectrum(0.0f);
-  for (int i = 0; i < n_; ++i) {
-    const Part &part = parts_[i];
+  for (const Part &part : parts_) {
     const float density = part.profile.density(t);
     const Spectrum extinction = part.medium.extinction * density;
     scratch.extinction += extinction;
     if (part.replaced) scratch.replaced += extinction;
     if (part.medium.part < 0) continue;
-    Spectrum &scattering = scratch.part[part.medium.part];
+    Spectrum &scattering = scratch.parts[part.medium.part].scattering;
     scattering *= t >= part.first && t <= part.last ? density : 0.0f;
     scratch.scattering += scattering;
   }
@@ -116,10 +114,10 @@ const MediumHere &StratifiedMedia::at(float t, MediumHere &scratch) const {
 
 Spectrum StratifiedMedia::depth(float t) const {
   Spectrum sum(0.0f);
-  for (int i = 0; i < n_; ++i) {
-    const float length = parts_[i].profile.depth(t);
+  for (const Part &part : parts_) {
+    const float length = part.profile.depth(t);
     for (int k = 0; k < kWavelengths; ++k)
-      if (parts_[i].medium.extinction[k] > 0) sum[k] += parts_[i].medium.extinction[k] * length;
+      if (part.medium.extinction[k] > 0) sum[k] += part.medium.extinction[k] * length;
   }
   return sum;
 }
@@ -128,40 +126,40 @@ Spectrum StratifiedMedia::transmittance(float t) const { return exp(depth(t) * -
 
 Spectrum StratifiedMedia::replaced_transmittance(float t) const {
   Spectrum sum(0.0f);
-  for (int i = 0; i < n_; ++i)
-    for (int k = 0; parts_[i].replaced && k < kWavelengths; ++k)
-      if (parts_[i].medium.extinction[k] > 0) sum[k] += parts_[i].medium.extinction[k] * parts_[i].profile.depth(t);
+  for (const Part &part : parts_)
+    for (int k = 0; part.replaced && k < kWavelengths; ++k)
+      if (part.medium.extinction[k] > 0) sum[k] += part.medium.extinction[k] * part.profile.depth(t);
   return exp(sum * -1.0f);
 }
 
 float StratifiedMedia::mean_extinction(float t) const {
   float sum = 0;
-  for (int i = 0; i < n_; ++i) sum += parts_[i].mean * parts_[i].profile.density(t);
+  for (const Part &part : parts_) sum += part.mean * part.profile.density(t);
   return sum;
 }
 
 float StratifiedMedia::mean_depth(float t) const {
   float sum = 0;
-  for (int i = 0; i < n_; ++i)
-    if (parts_[i].mean > 0) sum += parts_[i].mean * parts_[i].profile.depth(t);
+  for (const Part &part : parts_)
+    if (part.mean > 0) sum += part.mean * part.profile.depth(t);
   return sum;
 }
 
 // One medium in closed form; several by Newton's method between bounds that close in.
 float StratifiedMedia::reach(float depth, bool hero) const {
   const auto coefficient = [hero](const Part &part) { return hero ? part.medium.extinction[0] : part.mean; };
-  if (homogeneous_ || n_ == 1) {
+  if (homogeneous_ || parts_.count() == 1) {
     float sum = 0;
-    for (int i = 0; i < n_; ++i) sum += coefficient(parts_[i]);
+    for (const Part &part : parts_) sum += coefficient(part);
     if (!(sum > 0)) return kInfinity;
     return homogeneous_ ? depth / sum : parts_[0].profile.reach(depth / sum);
   }
   const auto reached = [&](float t, float &slope) {
     float sum = 0;
     slope = 0;
-    for (int i = 0; i < n_; ++i) {
-      const float c = coefficient(parts_[i]);
-      if (c > 0) sum += c * parts_[i].profile.depth(t), slope += c * parts_[i].profile.density(t);
+    for (const Part &part : parts_) {
+      const float c = coefficient(part);
+      if (c > 0) sum += c * part.profile.depth(t), slope += c * part.profile.density(t);
     }
     return sum;
   };

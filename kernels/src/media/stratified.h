@@ -67,8 +67,7 @@ class StratifiedMedia {
   float reach(float depth, bool hero) const;
 
   MediumHere full_;
-  Part parts_[MediumSet::kCapacity];
-  int n_ = 0;
+  Slots<Part, MediumSet::kCapacity> parts_;  // by medium
   bool homogeneous_ = true;
 };
 

@@ -21,7 +21,7 @@ RayMedia::RayMedia(const Scene &scene, const MediumSet &set, const Wavelengths &
   const float size = scene.bounds.empty() ? 1.0f : std::max(scene.bounds.radius(), 1e-6f);
   for (int i = 0; i < set.count(); ++i) {
     const Medium &medium = scene.media[size_t(set[i].medium)];
-    Layer &layer = layers_[n_layers_++];
+    Layer &layer = layers_.add();
     layer.medium = &medium;
     layer.phase = medium.phase >= 0 ? &scene.phases[size_t(medium.phase)] : &isotropic();
     layer.density = grid(medium.density.grid), layer.emission = grid(medium.emission_density.grid);
@@ -49,7 +49,7 @@ RayMedia::RayMedia(const Scene &scene, const MediumSet &set, const Wavelengths &
 
 void RayMedia::add_part(const Layer &layer, const DensityField &field, const Grid *grid, const Spectrum &coefficient,
                         bool emissive, float homogeneous_rate) {
-  Part &part = parts_[n_parts_++];
+  Part &part = parts_.add();
   part.steps = MajorantSteps(field, grid, layer.origin, layer.direction);
   part.coefficient = coefficient;
   part.mean_coefficient = coefficient.average();
@@ -59,8 +59,7 @@ void RayMedia::add_part(const Layer &layer, const DensityField &field, const Gri
 
 MediumHere RayMedia::at(float t) const {
   MediumHere here;
-  for (int i = 0; i < n_layers_; ++i) {
-    const Layer &layer = layers_[i];
+  for (const Layer &layer : layers_) {
     const Medium &medium = *layer.medium;
     const Vec3 p = layer.origin + layer.direction * t;
     const float density = medium.density.at(p, layer.density);
@@ -79,9 +78,7 @@ MediumHere RayMedia::at(float t) const {
     if (medium.layer != OPAL_MEDIUM_LAYER_BASE) here.replaced += here.extinction - before;
     if (scattering.is_zero()) continue;
     here.scattering += scattering;
-    here.part[here.n] = scattering;
-    here.layer[here.n] = medium.layer;
-    here.phase[here.n++] = layer.phase;
+    here.parts.add(layer.phase, scattering, medium.layer);
   }
   return here;
 }
@@ -92,8 +89,7 @@ bool RayMedia::next(float t_end, Interval &out) {
   for (;;) {
     float end = kInfinity;
     out.majorant = Spectrum(0.0f), out.mean = 0, out.emissive = false;
-    for (int i = 0; i < n_parts_; ++i) {
-      Part &part = parts_[i];
+    for (Part &part : parts_) {
       while (!(part.steps.end() > position_)) part.steps.advance();
       end = std::min(end, part.steps.end());
       if (!(part.steps.majorant() > 0)) continue;

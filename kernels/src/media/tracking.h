@@ -52,11 +52,10 @@ class RayMedia {
   void add_part(const Layer &layer, const DensityField &field, const Grid *grid, const Spectrum &coefficient, bool emissive,
                 float homogeneous_rate);
 
-  static constexpr int kMostParts = 5 * MediumSet::kCapacity;
+  static constexpr int kMostFields = 5;  // of a medium: density, glow, three grids of colours
   const Wavelengths &w_;
-  int n_layers_ = 0, n_parts_ = 0;
-  Layer layers_[MediumSet::kCapacity];
-  Part parts_[kMostParts];
+  Slots<Layer, MediumSet::kCapacity> layers_;
+  Slots<Part, kMostFields * MediumSet::kCapacity> parts_;
   float position_ = 0;
 };
 

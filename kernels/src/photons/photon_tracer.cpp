@@ -47,6 +47,7 @@ class PhotonPath {
     if (!emit()) return;
     follow();
     out_.passed_over += interior_.passed_over();
+    out_.media_passed_over += entered_.passed_over();
   }
 
  private:
@@ -95,7 +96,9 @@ class PhotonPath {
     const uint32_t kind = sharp_events_ + rough_events_ == 0 ? uint32_t(OPAL_RAY_ALL & ~OPAL_RAY_CAMERA) : ray_kind_;
     const Hit hit = next_hit(scene_, ray_, kind);
     ++out_.rays;
+    if (escapes(scene_, ray_, hit)) entered_.leave_bodies();
     media_ = media_that_fill(scene_, entered_, interior_);
+    out_.media_passed_over += media_.passed_over();
     float t_end = hit.t;
     if (emitted_.reach < kInfinity && sharp_events_ + rough_events_ == 0)
       t_end = std::min(t_end, std::max(emitted_.reach - length(ray_.origin - emitted_.ray.origin), 0.0f));
@@ -386,7 +389,7 @@ class PhotonPath {
     store(flux, photon.flux);
     out_.photons.push_back(photon);
     if (trail_.open()) splat_with_followers();
-    else splat(surface_, flux, path_pdf_);
+    else splat(ray_, surface_, flux, path_pdf_);
   }
 
   void splat_with_followers() {
@@ -396,7 +399,7 @@ class PhotonPath {
       return s;
     };
     const size_t first = out_.splats.size(), first_spectral = out_.spectral.size();
-    splat(surface_, only(0, flux_[0] * kWavelengths), only(0, 1));
+    splat(ray_, surface_, only(0, flux_[0] * kWavelengths), only(0, 1));
     float together = path_pdf_[0];
     const int32_t absorption = absorption_table(scene_, interior_);
     ColourTrail::End end;
@@ -406,13 +409,13 @@ class PhotonPath {
       make_surface(scene_, end.ray, end.hit, ray_kind_, uint32_t(sharp_events_ + rough_events_), interior_, w_, there);
       if (!there.has_smooth_lobe) continue;
       together += end.path_pdf;
-      splat(there, only(k, end.flux * kWavelengths), only(k, 1));
+      splat(end.ray, there, only(k, end.flux * kWavelengths), only(k, 1));
     }
     for (size_t i = first; i < out_.splats.size(); ++i) out_.splats[i].rgb *= 1 / together;
     for (size_t i = first_spectral; i < out_.spectral.size(); ++i) out_.spectral[i].second *= 1 / together;
   }
 
-  void splat(const Surface &surface, const Spectrum &flux, const Spectrum &path_pdf) {
+  void splat(const Ray &arrived, const Surface &surface, const Spectrum &flux, const Spectrum &path_pdf) {
     if (!(flux.max() > kNothing * start_)) return;
     const Vec2 offset = pass_.filter.sample(sampler_.get2d(kDimFilter));
     CameraConnection seen;
@@ -426,7 +429,8 @@ class PhotonPath {
     const Spectrum f = rough_towards_camera(scene_, surface, seen.to_camera, seen.distance, w_);
     Spectrum radiance = flux * f * (seen.importance * float(settings_.width) * float(settings_.height));
     if (radiance.is_zero() || !radiance.is_finite()) return;
-    const Ray shadow{offset_origin(surface.sp, seen.to_camera), seen.to_camera, 0, seen.distance, ray_.time};
+    Ray shadow = leave_surface(scene_, arrived, surface.sp, seen.to_camera);
+    shadow.t_max = seen.distance;
     const Passage through =
         passage(scene_, shadow, entered_, interior_, settings_.transparent_depth, w_,
                 RandomStream(sampler_, bounce_dimension(uint32_t(sharp_events_ + rough_events_), kDimSpare)));

@@ -34,6 +34,7 @@ struct PhotonChunk {
   std::vector<Splat> splats;
   std::vector<std::pair<uint32_t, float>> spectral;  // (pixel * bins + bin, radiance per nm)
   int64_t rays = 0, passed_over = 0;
+  int64_t media_passed_over = 0;
 };
 
 // What photons are for, of `count` in all: traced together for surfaces and media, or apart.

@@ -4,10 +4,9 @@
 // Meshes become Embree scenes of their own, instances refer to them: a hundred thousand copies cost a transform each,
 // an edited colour rebuilds nothing and a moved object the top level alone.
 #include "core/stopwatch.h"
-#include "scene/scene.h"
+#include "scene/touching.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace opal {
 namespace {
@@ -54,6 +53,7 @@ void build_mesh(const Scene &scene, Mesh &mesh) {
     embree.release_geometry(geometry);
   }
   commit_embree(scene, mesh.embree, "building a mesh");
+  mesh.touches_itself.reset();
   mesh.dirty = false;
 }
 
@@ -83,17 +83,6 @@ void build_top(Scene &scene) {
     embree.release_geometry(geometry);
   }
   commit_embree(scene, scene.top, "building the scene");
-}
-
-Bounds world_bounds(const Bounds &local, const Instance &instance) {
-  Bounds b;
-  if (local.empty()) return b;
-  for (int i = 0; i < 8; ++i) {
-    const Vec3 p{i & 1 ? local.high.x : local.low.x, i & 2 ? local.high.y : local.low.y, i & 4 ? local.high.z : local.low.z};
-    b.extend(instance.to_world.point(p));
-    if (instance.moving) b.extend(instance.to_world_end.point(p));
-  }
-  return b;
 }
 
 // The sphere round an instance: about the centre of its bounds, as small as the eight corners of its own box allow.
@@ -163,54 +152,6 @@ void collect_casters(Scene &scene) {
   scene.casters.clear();
   if (all.size() <= kMaxCasters) scene.casters = std::move(all);
   else merge_targets(all, 0, all.size(), kMaxCasters, scene.casters);
-}
-
-Vec3 absolute_largest(const Bounds &b) {
-  Vec3 v;
-  for (int i = 0; i < 3; ++i) v[i] = std::max(std::abs(b.low[i]), std::abs(b.high[i]));
-  return v;
-}
-
-bool overlap(const Bounds &a, const Bounds &b) {
-  const Vec3 slack = (absolute_largest(a) + absolute_largest(b)) * Vec3{1e-6f, 1e-6f, 1e-6f};
-  for (int i = 0; i < 3; ++i)
-    if (a.low[i] > b.high[i] + slack[i] || b.low[i] > a.high[i] + slack[i]) return false;
-  return true;
-}
-
-// Marks instances whose faces may coincide with those of a gem, and ranks all by size.
-void find_touching(Scene &scene) {
-  constexpr size_t kMostPairs = 20'000'000;
-  std::vector<uint32_t> gems;
-  std::vector<Bounds> bounds;
-  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
-    Instance &instance = scene.instances[i];
-    instance.touching = false;
-    bounds.push_back(world_bounds(scene.meshes[instance.mesh]->bounds, instance));
-    for (const int32_t m : scene.groups[instance.group].materials)
-      if (m >= 0 && scene.materials[size_t(m)].is_gem) {
-        gems.push_back(i);
-        break;
-      }
-  }
-  std::vector<uint32_t> by_size(bounds.size());
-  std::iota(by_size.begin(), by_size.end(), 0u);
-  std::stable_sort(by_size.begin(), by_size.end(), [&](uint32_t a, uint32_t b) {
-    return length_squared(bounds[a].high - bounds[a].low) > length_squared(bounds[b].high - bounds[b].low);
-  });
-  for (uint32_t i = 0; i < by_size.size(); ++i) scene.instances[by_size[i]].order = i;
-  const bool all = gems.size() * scene.instances.size() > kMostPairs;
-  if (all)
-    for (Instance &instance : scene.instances) instance.touching = true;
-  for (size_t g = 0; !all && g < gems.size(); ++g) {
-    scene.stop_if_cancelled();
-    for (uint32_t i = 0; i < scene.instances.size(); ++i) {
-      const uint32_t gem = gems[g];
-      if (i != gem && overlap(bounds[gem], bounds[i])) scene.instances[gem].touching = scene.instances[i].touching = true;
-    }
-  }
-  scene.any_touching =
-      std::any_of(scene.instances.begin(), scene.instances.end(), [](const Instance &i) { return i.touching; });
 }
 
 void collect_emissive(Scene &scene) {

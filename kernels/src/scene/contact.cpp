@@ -12,10 +12,11 @@ float contact_length(const ShadingPoint &sp, const Vec3 &direction) {
   return 4 * off / std::max(std::abs(dot(direction, sp.ng)), kLeastCosine);
 }
 
-enum class Rank { Entered, Left, Surface };
+enum class Rank { Entered, Left, Surface, Medium };
 
 Rank rank_of(const Scene &scene, const Hit &hit, const ShadingPoint &sp) {
-  if (!scene.material_at(hit).is_gem) return Rank::Surface;
+  const Material &material = scene.material_at(hit);
+  if (!material.is_gem) return material.no_surface() ? Rank::Medium : Rank::Surface;
   return sp.backfacing ? Rank::Left : Rank::Entered;
 }
 
@@ -24,7 +25,7 @@ Rank rank_of(const Scene &scene, const Hit &hit, const ShadingPoint &sp) {
 Hit next_hit(const Scene &scene, const Ray &ray, uint32_t visibility) {
   Hit best = scene.intersect(ray, visibility);
   if (!scene.any_touching || !best.valid() || !scene.instances[best.instance].touching) return best;
-  ShadingPoint sp = scene.shading_point(ray, best);
+  const ShadingPoint sp = scene.shading_point(ray, best);
   Rank rank = rank_of(scene, best, sp);
   // What lies in the same place and comes first: the search leaves out what was found before.
   Ray search = ray;
@@ -33,16 +34,17 @@ Hit next_hit(const Scene &scene, const Ray &ray, uint32_t visibility) {
   Contact &found = search.contact;
   found = {};
   found.until = kInfinity;
-  found.crossed[found.count++] = best.instance;
+  found.crossed[found.count++] = found.face(best.instance, sp.backfacing);
   while (rank != Rank::Entered) {
     const Hit other = scene.intersect(search, visibility);
     if (!other.valid()) break;
-    if (other.t >= ray.contact.until || ray.contact.meets(other.instance)) {
-      const Rank of_other = rank_of(scene, other, scene.shading_point(ray, other));
+    const ShadingPoint there = scene.shading_point(ray, other);
+    if (other.t >= ray.contact.until || ray.contact.meets(other.instance, there.backfacing)) {
+      const Rank of_other = rank_of(scene, other, there);
       if (of_other < rank) best = other, rank = of_other;
     }
     if (found.count == Contact::kMost) break;
-    found.crossed[found.count++] = other.instance;
+    found.crossed[found.count++] = found.face(other.instance, there.backfacing);
   }
   return best;
 }
@@ -54,14 +56,14 @@ Ray leave_surface(const Scene &scene, const Ray &arrived, const ShadingPoint &sp
   if (sp.ray_length < arrived.contact.until) contact = arrived.contact;
   if (dot(direction, sp.ng) > 0) {
     contact.backward = !contact.backward;
-  } else if (contact.backward) {
-    for (int i = 0; i < contact.count; ++i)
-      if (contact.crossed[i] == sp.instance_index) {
-        contact.crossed[i] = contact.crossed[--contact.count];
-        break;
-      }
-  } else if (contact.count < Contact::kMost && !contact.contains(sp.instance_index)) {
-    contact.crossed[contact.count++] = sp.instance_index;
+  } else {
+    const int known = contact.find(sp.instance_index, sp.backfacing);
+    if (contact.backward) {
+      if (known >= 0) contact.crossed[known] = contact.crossed[--contact.count];
+    } else if (known < 0) {
+      if (contact.count == Contact::kMost) return plain;  // past all that is left
+      contact.crossed[contact.count++] = contact.face(sp.instance_index, sp.backfacing);
+    }
   }
   if (contact.count == 0) return plain;
   contact.until = contact_length(sp, direction);

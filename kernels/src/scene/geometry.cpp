@@ -19,7 +19,10 @@ struct ContactQuery {
 
   static void filter(const RTCFilterArguments *a) {
     const Contact &contact = *reinterpret_cast<const ContactQuery *>(a->context)->contact;
-    if (a->ray->tfar < contact.until && !contact.meets(a->hit->instance[0])) *a->valid = 0;
+    if (!(a->ray->tfar < contact.until)) return;
+    // Ray and normal are in the object's space, where faces are wound as in the mesh.
+    const bool back = dot(Vec3{a->hit->ng_x, a->hit->ng_y, a->hit->ng_z}, {a->ray->dir_x, a->ray->dir_y, a->ray->dir_z}) > 0;
+    if (!contact.meets(a->hit->instance[0], back)) *a->valid = 0;
   }
 };
 
@@ -29,6 +32,17 @@ Vec3 Mesh::vertex(int i, float time) const {
   const Vec3 a = vertex(i);
   if (positions_end.empty()) return a;
   return lerp(a, corner(positions_end, size_t(i) * 3), time);
+}
+
+Bounds world_bounds(const Bounds &local, const Instance &instance) {
+  Bounds b;
+  if (local.empty()) return b;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 p{i & 1 ? local.high.x : local.low.x, i & 2 ? local.high.y : local.low.y, i & 4 ? local.high.z : local.low.z};
+    b.extend(instance.to_world.point(p));
+    if (instance.moving) b.extend(instance.to_world_end.point(p));
+  }
+  return b;
 }
 
 Hit Scene::intersect(const Ray &ray, uint32_t visibility) const {
@@ -53,7 +67,7 @@ Hit Scene::intersect(const Ray &ray, uint32_t visibility) const {
 }
 
 bool Scene::occluded(const Ray &ray, uint32_t visibility) const {
-  if (!embree.ray_mask) return intersect(ray, visibility).valid();
+  if (!embree.ray_mask || ray.contact.until > 0) return intersect(ray, visibility).valid();
   RTCRay r;
   r.org_x = ray.origin.x, r.org_y = ray.origin.y, r.org_z = ray.origin.z;
   r.dir_x = ray.direction.x, r.dir_y = ray.direction.y, r.dir_z = ray.direction.z;

@@ -13,6 +13,7 @@
 #include <atomic>
 #include <memory>
 #include <stdexcept>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,7 @@ struct Mesh {
   Bounds bounds;              // object space, both ends of the motion
   RTCScene embree = nullptr;  // one-triangle-mesh scene, instanced
   bool dirty = true;
+  std::optional<bool> touches_itself;  // scene/touching.h; not known until asked
 
   int n_triangles() const { return int(triangles.size() / 3); }
   Vec3 vertex(int i) const { return {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]}; }
@@ -57,7 +59,7 @@ struct Instance {
   uint32_t mesh = 0;
   Transform to_world, to_object, to_world_end;
   bool moving = false, mirrored = false;  // mirrored: negative determinant
-  bool touching = false;                  // its bounds meet those of a gem, or it is a gem and they meet another's
+  bool touching = false;                  // its faces may coincide with those of a gem or a medium (scene/touching.h)
   uint32_t order = 0;                     // by falling size of the bounds: the smallest comes last
   uint32_t group = 0;                     // index into Scene::groups
   float random = 0, object_index = 0;
@@ -141,7 +143,7 @@ struct Scene {
   double build_seconds = 0;
   int64_t mesh_builds = 0, top_builds = 0, light_builds = 0;  // since the scene was created
   bool any_transparent_shadow = false;                        // a material that shadow rays must look through
-  bool any_touching = false;                                  // faces of gems may coincide with others
+  bool any_touching = false;                                  // faces of gems or media may coincide with others
   bool any_medium = false;                                    // rays must keep track of what they are in
   bool any_glowing_medium = false;                            // a medium gives off light
   bool geometry_dirty = true, instances_dirty = true, lights_dirty = true;
@@ -172,6 +174,9 @@ struct Scene {
   std::vector<float> observer_table, d65_table, basis_table;
   opal_tables tables() const { return {observer_table.data(), d65_table.data(), basis_table.data()}; }
 };
+
+// Of an instance whose mesh has these bounds, with its motion.
+Bounds world_bounds(const Bounds &local, const Instance &instance);
 
 // Where a ray that leaves sp.p in `direction` may start: off the surface by the rounding error of the point, which is
 // bounded axis by axis (Pharr, Jakob & Humphreys, "Managing rounding error"), so there is no absolute epsilon.
