@@ -12,7 +12,6 @@ namespace opal {
 // What a ray is in at the path's wavelengths.
 struct MediumHere {
   Spectrum extinction{0.0f}, scattering{0.0f}, emission{0.0f};
-  Spectrum replaced{0.0f};  // of the extinction, by media that the layers' base leaves out
   int n = 0;
   const PhaseFunction *phase[MediumSet::kCapacity] = {};
   Spectrum part[MediumSet::kCapacity];       // of the scattering, by medium
