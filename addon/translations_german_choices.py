@@ -19,6 +19,7 @@ CHOICES = {
     "Cleft": "Kerbe",
     "Compare": "Vergleichen",
     "Compositor Nodes": "Compositor-Nodes",
+    "Show in the Scene's Compositor": "Im Compositor der Szene zeigen",
     "Corners": "Ecken",
     "Crown Angle": "Kronenwinkel",
     "Culet": "Kalette",
@@ -152,8 +153,11 @@ CHOICES = {
     "As many camera paths a pixel as Opal renders": "So viele Kamerapfade je Bildpunkt, wie Opal rendert",
     "As many seconds as Opal takes": "So viele Sekunden, wie Opal braucht",
     "Beginning of the files' names; # stands for a digit of the frame number": "Anfang der Dateinamen; # steht für eine Ziffer der Bildnummer",
-    "Build compositor nodes that lay the layers over the base, each with an exposure of its own": "Compositor-Nodes bauen, die die Ebenen über "
-    "das Grundbild legen, jede mit eigener Belichtung",
+    "Build a group of compositor nodes that lay the layers over the base, each with an exposure of its own": "Eine Gruppe von "
+    "Compositor-Nodes bauen, die die Ebenen über das Grundbild legen, jede mit eigener Belichtung",
+    "Make the group the scene's compositor where there is none: every later render then shows this still, tuned, instead of what it renders": "Die "
+    "Gruppe zum Compositor der Szene machen, wo sie keinen hat: jedes spätere Rendern zeigt dann dieses Standbild mit seinen Belichtungen statt "
+    "dessen, was gerendert wird",
     "Delete this preset; the settings stay as they are": "Diese Vorgabe löschen; die Einstellungen bleiben, wie sie sind",
     "Denoise the merged picture by Open Image Denoise; the films have to be rendered with Denoise on, so that they keep its guides": "Das "
     "vereinte Bild mit Open Image Denoise entrauschen; die Filme müssen mit Entrauschen gerendert sein, damit sie dessen Hilfsbilder enthalten",

@@ -27,40 +27,59 @@ mkdir -p "$folder/logs" "$folder/films" && folder=$(realpath "$folder") || exit 
 # What each command sets before it renders: its share of the passes. The last part takes the rest.
 share='
 import bpy, os, sys
-part, parts, films = int(sys.argv[-3]), int(sys.argv[-2]), sys.argv[-1]
+part, parts, film = int(sys.argv[-3]), int(sys.argv[-2]), sys.argv[-1]
 for scene in bpy.data.scenes:
     opal = scene.opal
     first, last = (opal.passes * k // parts for k in (part, part + 1))
     if first == last and scene == bpy.context.scene:
-        os._exit(0)  # more parts than passes: nothing is left for this one
+        open(film + "_none", "w").close()  # more parts than passes: nothing is left for this one
+        os._exit(0)
     opal.pass_first, opal.passes = opal.pass_first + first, max(1, last - first)
-    opal.use_film_file, opal.film_path = True, films
+    opal.use_film_file, opal.film_path = True, film + ".npz"
 '
 merge='
 import bpy, sys
 frame, parts, folder = int(sys.argv[-3]), int(sys.argv[-2]), sys.argv[-1]
-bpy.ops.opal.merge(directory=f"{folder}/films", pattern=f"frame_{frame:04d}_*.npz", output=f"{folder}/frame_{frame:04d}.exr")
+pattern = f"frame_{frame:04d}_part_*_of_{parts}_*.npz"
+bpy.ops.opal.merge(directory=f"{folder}/films", pattern=pattern, output=f"{folder}/frame_{frame:04d}.exr")
 '
 
 say() { printf '%(%H:%M:%S)T %s\n' -1 "$*"; }
 
+picture_of() { printf '%s/frame_%04d.exr' "$folder" "$1"; }
+name_of() { printf 'frame_%04d_part_%d_of_%d' "$1" "$2" "$parts"; }  # frame, part
+
+why() {  # log: its last error, else the last thing it says
+  local said
+  said=$(grep -i error "$1" | tail -n 1)
+  [ -n "$said" ] || said=$(grep . "$1" | tail -n 1)
+  printf '%s' "${said:-nothing is in $1}"
+}
+
 part_of() {  # frame, part
-  local name films
-  name=$(printf 'frame_%04d_part_%d' "$1" "$2")
-  films=$folder/films/frame_####.npz
-  [ "${OVERWRITE:-0}" = 1 ] || [ ! -e "$folder/logs/$name.done" ] || { say "$name is there"; return 0; }
-  rm -f "$folder/logs/$name.done"
+  local name log
+  name=$(name_of "$1" "$2") log=$folder/logs/$(name_of "$1" "$2").log
+  [ ! -e "$folder/logs/$name.done" ] || { say "$name is there"; return 0; }
+  rm -f "$folder/films/${name}_"*  # of a command that was interrupted
   say "$name begins"
-  if $run "$blender" -b "$file" -E OPAL --python-exit-code 1 --python-expr "$share" \
-    -o "$folder/films/${name}_" -F OPEN_EXR -f "$1" -- "$2" "$parts" "$films" >"$folder/logs/$name.log" 2>&1; then
+  if ! $run "$blender" -b "$file" -E OPAL --python-exit-code 1 --python-expr "$share" \
+    -o "$folder/films/${name}_picture_" -F OPEN_EXR -f "$1" -- "$2" "$parts" "$folder/films/$name" >"$log" 2>&1; then
+    say "$name failed: $(why "$log")"
+  elif ! compgen -G "$folder/films/${name}_*.npz" >/dev/null && [ ! -e "$folder/films/${name}_none" ]; then
+    say "$name failed, for it wrote no film: $(why "$log")"
+  else
     touch "$folder/logs/$name.done"
     say "$name is done"
-  else
-    say "$name failed: $(grep -i error "$folder/logs/$name.log" | tail -n 1)"
   fi
 }
 
 for ((frame = first; frame <= last; frame++)); do
+  if [ "${OVERWRITE:-0}" = 1 ]; then  # whatever number of parts it was made of
+    stem=$(printf 'frame_%04d' "$frame")
+    rm -f "$(picture_of "$frame")" "$folder/films/${stem}_part_"* "$folder/logs/${stem}_part_"*.done
+  elif [ -e "$(picture_of "$frame")" ]; then
+    continue
+  fi
   for ((part = 0; part < parts; part++)); do
     while [ "$(jobs -rp | wc -l)" -ge "$jobs" ]; do wait -n; done
     part_of "$frame" "$part" &
@@ -70,16 +89,19 @@ wait
 
 missing=0
 for ((frame = first; frame <= last; frame++)); do
-  whole=1
-  for ((part = 0; part < parts; part++)); do
-    [ -e "$(printf '%s/logs/frame_%04d_part_%d.done' "$folder" "$frame" "$part")" ] || whole=0
-  done
-  picture=$(printf '%s/frame_%04d.exr' "$folder" "$frame")
-  if [ $whole = 1 ] && { [ "${OVERWRITE:-0}" = 1 ] || [ ! -e "$picture" ]; }; then
+  picture=$(picture_of "$frame")
+  if [ ! -e "$picture" ]; then
+    whole=1
+    for ((part = 0; part < parts; part++)); do
+      [ -e "$folder/logs/$(name_of "$frame" "$part").done" ] || whole=0
+    done
     log=$(printf '%s/logs/frame_%04d_merge.log' "$folder" "$frame")
-    $run "$blender" -b "$file" --python-exit-code 1 --python-expr "$merge" -- "$frame" "$parts" "$folder" >"$log" 2>&1 || whole=0
+    if [ $whole = 1 ] && ! $run "$blender" -b "$file" --python-exit-code 1 --python-expr "$merge" -- "$frame" "$parts" "$folder" \
+      >"$log" 2>&1; then
+      say "the films of frame $frame were not merged: $(why "$log")"
+    fi
   fi
-  if [ $whole = 1 ] && [ -e "$picture" ]; then
+  if [ -e "$picture" ]; then
     say "frame $frame is whole: $picture"
   else
     say "frame $frame is missing"

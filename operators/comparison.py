@@ -11,7 +11,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from . import cycles_base, difference_map, float_images, render_scene
+from . import cycles_base, difference_map, float_images, own_images, render_scene
 from .changed import Changed
 from .compare_cycles import DIFFERENCE, SIDE_BY_SIDE
 
@@ -57,10 +57,11 @@ def show(context: Any, ours: np.ndarray, theirs: np.ndarray, result: dict[str, A
     limit = result["difference_limit"] = difference_map.limit_of(ours, theirs)
     boxes = [region["box"] for region in result.get("regions", ())]
     difference = difference_map.draw(ours, theirs, limit, boxes)
-    float_images.put("Opal Comparison", ours, "Opal's picture of the comparison")
-    float_images.put("Cycles Comparison", theirs, "Cycles' picture of the comparison")
-    image = float_images.put(SIDE_BY_SIDE, both, "Opal left, Cycles right")
-    float_images.put(DIFFERENCE, _linear(difference), "Opal less Cycles: red is brighter, blue darker")
+    owner = own_images.owner_of(context.scene, context.view_layer)
+    float_images.put("Opal Comparison", ours, owner, "Opal's picture of the comparison")
+    float_images.put("Cycles Comparison", theirs, owner, "Cycles' picture of the comparison")
+    image = float_images.put(SIDE_BY_SIDE, both, owner, "Opal left, Cycles right")
+    float_images.put(DIFFERENCE, _linear(difference), owner, "Opal less Cycles: red is brighter, blue darker")
     if not bpy.app.background:
         _open(context, image)
     return {"side_by_side": metrics.srgb(both), "difference": difference}

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Opal's light in a Cycles picture: the base by Cycles, Opal's layers over it, and compositor nodes to tune them by."""
 
+from typing import Any
+
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty
 
@@ -47,8 +49,14 @@ class OPAL_OT_composite(bpy.types.Operator, WritesFile):
     )
     use_nodes: BoolProperty(
         name="Compositor Nodes",
-        description="Build compositor nodes that lay the layers over the base, each with an exposure of its own",
+        description="Build a group of compositor nodes that lay the layers over the base, each with an exposure of its own",
         default=True,
+    )
+    show_in_compositor: BoolProperty(
+        name="Show in the Scene's Compositor",
+        description="Make the group the scene's compositor where there is none: every later render then shows this still, tuned, instead of "
+        "what it renders",
+        default=False,
     )
 
     @classmethod
@@ -58,7 +66,7 @@ class OPAL_OT_composite(bpy.types.Operator, WritesFile):
     def execute(self, context: bpy.types.Context) -> set[str]:
         from opal_kernels.binding import OpalError
 
-        from . import compositor, cycles_base, float_images, layers, render_scene
+        from . import cycles_base, float_images, layers, own_images, render_scene
 
         chosen = set(self.layers) | ({"TRANSMITTANCE"} if self.attenuation == "LAYER" else set())
         try:
@@ -69,19 +77,30 @@ class OPAL_OT_composite(bpy.types.Operator, WritesFile):
             if base.picture.shape != rendered.picture.shape:
                 raise render_scene.RenderFailed("Cycles and Opal gave pictures of different sizes: turn Crop to Render Region on.")
             result = layers.composite(base.picture, over)
-            images = {name: float_images.put(layer_names.image_name(name), pixels) for name, pixels in over.items()}
-            images["BASE"] = float_images.put("Opal Base", base.picture)
-            float_images.put("Opal Composite", result)
+            owner = own_images.owner_of(context.scene, context.view_layer)
+            images = {name: float_images.put(layer_names.image_name(name), pixels, owner) for name, pixels in over.items()}
+            images["BASE"] = float_images.put("Opal Base", base.picture, owner)
+            whole = float_images.put("Opal Composite", result, owner)
             named = {layer_names.LABELS[name].replace(" ", ""): pixels for name, pixels in over.items()}
             told = self.write(context, {"Combined": result, "Base": base.picture, **named})
         except (render_scene.RenderFailed, OpalError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         if self.use_nodes:
-            _, shown = compositor.build(context.scene, images)
-            told += "" if shown else f"; the scene has a compositor of its own: add the group “{compositor.NAME}” there"
-        self.report({"INFO"}, f"Base {base.seconds:.1f} s, layers {rendered.seconds:.1f} s, in the image “Opal Composite”" + told)
+            told += self._build_nodes(context.scene, images, owner)
+        self.report({"INFO"}, f"Base {base.seconds:.1f} s, layers {rendered.seconds:.1f} s, in the image “{whole.name}”" + told)
         return {"FINISHED"}
+
+    def _build_nodes(self, scene: bpy.types.Scene, images: dict[str, Any], owner: str) -> str:
+        """Builds the compositor's group; returns what to tell of it."""
+        from . import compositor
+
+        group = compositor.build(images, owner)
+        if not self.show_in_compositor:
+            return f"; to tune it, use the node group “{group.name}” in the compositor"
+        if not compositor.show(scene, group):
+            return f"; the scene has a compositor of its own: add the group “{group.name}” there"
+        return f"; every render now shows this still of frame {scene.frame_current}, until “{group.name}” leaves the compositor"
 
     def _cycles_settings(self, scene: bpy.types.Scene) -> dict[str, object]:
         from . import cycles_base

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Compositor nodes that lay Opal's layers over the base, each with an exposure of its own.
 
-The nodes are a group named “Opal Composite”. It becomes the scene's compositor where there is none; a compositor that the artist made
-is never changed, and the group waits in the Add menu.
+The nodes are a group named “Opal Composite”, which waits in the Add menu and in the compositor's list of trees. It shows pictures of one
+frame, so that it is the scene's compositor only if the artist asks for that: every render would be that still. A compositor that the
+artist made is never changed.
 
 Blender 5 replaced the scene's node tree by a node group and the compositor's Mix, Math and Composite nodes by those of shaders and
 by a group output.
@@ -15,7 +16,7 @@ from typing import Any
 
 import bpy
 
-from . import layer_names
+from . import layer_names, own_images
 
 NAME = "Opal Composite"
 _IS_GROUP = bpy.app.version >= (5, 0, 0)
@@ -23,23 +24,29 @@ _IS_GROUP = bpy.app.version >= (5, 0, 0)
 _DEFAULT = {"CompositorNodeRLayers", "CompositorNodeComposite", "CompositorNodeViewer", "NodeReroute"}
 
 
-def build(scene: Any, images: Mapping[str, Any]) -> tuple[Any, bool]:
-    """Builds the group from images by identifier (``BASE`` and layers).
+def build(images: Mapping[str, Any], owner: str) -> Any:
+    """Builds an owner's group (see `own_images`) from images by identifier (``BASE`` and layers); exposures that he set stay.
 
     Returns
     -------
-    (bpy.types.NodeTree, bool)
-        The group, and whether it is what the scene's compositor shows.
+    bpy.types.NodeTree
     """
-    tree = bpy.data.node_groups.get(NAME)
-    if tree is None or tree.bl_idname != "CompositorNodeTree" or tree.library is not None:
-        tree = bpy.data.node_groups.new(NAME, "CompositorNodeTree")
+    tree = _own(owner)
+    if tree is None:
+        tree = bpy.data.node_groups.new(own_images.name_for(NAME, owner, bpy.data.node_groups), "CompositorNodeTree")
+        tree.use_fake_user = True  # it is kept with the file, used or not
+    tree[own_images.NAME_KEY], tree[own_images.OWNER_KEY] = NAME, owner
     kept = {node.name: node.inputs["Exposure"].default_value for node in tree.nodes if node.bl_idname == "CompositorNodeExposure"}
     tree.nodes.clear()
     tree.interface.clear()
     tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
     _fill(tree, images, kept)
-    return tree, _show(scene, tree)
+    return tree
+
+
+def _own(owner: str) -> Any:
+    made = [t for t in bpy.data.node_groups if t.library is None and t.get(own_images.NAME_KEY) == NAME]
+    return next((t for t in made if t[own_images.OWNER_KEY] == owner), next((t for t in made if own_images.belongs(t, owner)), None))
 
 
 def _fill(tree: Any, images: Mapping[str, Any], exposures: Mapping[str, float]) -> None:
@@ -135,8 +142,8 @@ class _Nodes:
         self.tree.links.new(whole.outputs[0], output.inputs[0])
 
 
-def _show(scene: Any, tree: Any) -> bool:
-    """Makes the group the scene's compositor where that takes nothing away."""
+def show(scene: Any, tree: Any) -> bool:
+    """Makes the group the scene's compositor where that takes nothing away; returns whether it is."""
     if _IS_GROUP:
         if scene.compositing_node_group is None:
             scene.compositing_node_group = tree
@@ -149,7 +156,7 @@ def _show(scene: Any, tree: Any) -> bool:
     if group is None:
         group = nodes.new("CompositorNodeGroup")
         group.node_tree = tree
-        group.name = group.label = NAME
+        group.name = group.label = tree.name
         group.location = (0, 300)
     if untouched:
         if output is None:

@@ -11,19 +11,20 @@ from typing import Any
 import bpy
 import numpy as np
 
-# Custom property of images that Opal made: these, and no others, may be written over.
-KEY = "opal_picture"
+from . import own_images
 
 
-def put(name: str, pixels: np.ndarray, about: str = "") -> Any:
+def put(name: str, pixels: np.ndarray, owner: str = "", about: str = "") -> Any:
     """A float image of this name that shows the pixels; an image of the same name that is not Opal's is left alone.
 
     Parameters
     ----------
     name : str
-        Wanted; Blender adds a number where a stranger has it.
+        Wanted; Blender adds a number where a stranger has it, and the owner stands behind it where another's picture has it.
     pixels : ndarray
         (height, width, 3 or 4) scene-linear, premultiplied, rows from the bottom up.
+    owner : str
+        Whose picture it is, by `own_images.owner_of`; empty: of the whole file.
     about : str
         Kept in the image's custom property ``opal_picture``.
 
@@ -32,28 +33,20 @@ def put(name: str, pixels: np.ndarray, about: str = "") -> Any:
     bpy.types.Image
     """
     height, width, channels = pixels.shape
-    image = own(name)
+    image = own_images.own(name, owner)
     if image is not None and (tuple(image.size) != (width, height) or not image.is_float):
         bpy.data.images.remove(image)
         image = None
     if image is None:
-        image = bpy.data.images.new(name, width, height, alpha=True, float_buffer=True)
+        image = bpy.data.images.new(own_images.name_for(name, owner, bpy.data.images), width, height, alpha=True, float_buffer=True)
     image.alpha_mode = "PREMUL"
-    image[KEY] = about or name
+    image[own_images.KEY], image[own_images.NAME_KEY], image[own_images.OWNER_KEY] = about or name, name, owner
     whole = np.ones((height, width, 4), np.float32)
     whole[..., :channels] = pixels
     image.pixels.foreach_set(whole.reshape(-1))
     image.update()
     image.pack()
     return image
-
-
-def own(name: str) -> Any:
-    """Opal's image of that name, with or without a number after it."""
-    for image in bpy.data.images:
-        if image.library is None and image.get(KEY) is not None and (image.name == name or image.name.rsplit(".", 1)[0] == name):
-            return image
-    return None
 
 
 def read(image: Any) -> np.ndarray:

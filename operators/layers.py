@@ -23,7 +23,7 @@ def passes(chosen: Collection[str]) -> list[Any]:
 
     through = "TRANSMITTANCE" in chosen
     kept = [Pass[f"LAYER_{name}"] for name in ADDED if name in chosen or (through and name in {"MEDIA", "RAINBOW"})]
-    return kept + ([Pass.LAYER_BASE, Pass.LAYER_BEHIND] if through else [])
+    return kept + ([Pass.LAYER_BASE, Pass.LAYER_BEHIND, Pass.LAYER_DIMMED] if through else [])
 
 
 def pictures(films: Mapping[Any, np.ndarray], chosen: Collection[str], transparent: bool) -> dict[str, np.ndarray]:
@@ -38,11 +38,11 @@ def pictures(films: Mapping[Any, np.ndarray], chosen: Collection[str], transpare
 
     found = {name: films[Pass[f"LAYER_{name}"]] for name in ADDED if name in chosen}
     if "TRANSMITTANCE" in chosen:
-        dimmed = films[Pass.LAYER_BASE]
-        found["TRANSMITTANCE"] = through = transmittance(dimmed, films[Pass.LAYER_BEHIND])
+        found["TRANSMITTANCE"] = through = transmittance(films[Pass.LAYER_DIMMED], films[Pass.LAYER_BEHIND])
         if not transparent:
-            seen = dimmed[..., 3] + films[Pass.LAYER_MEDIA][..., 3] + films[Pass.LAYER_RAINBOW][..., 3]
-            through[..., 3] = np.divide(dimmed[..., 3], seen, out=np.zeros_like(seen), where=seen > 0)
+            base = films[Pass.LAYER_BASE][..., 3]
+            seen = base + films[Pass.LAYER_MEDIA][..., 3] + films[Pass.LAYER_RAINBOW][..., 3]
+            through[..., 3] = np.divide(base, seen, out=np.zeros_like(seen), where=seen > 0)
     if "FULL" in chosen:
         found["FULL"] = films[Pass.COMBINED]
     return found

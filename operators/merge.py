@@ -51,16 +51,21 @@ class OPAL_OT_merge(bpy.types.Operator, ImportHelper):
         default=False,
     )
 
-    def execute(self, _context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> set[str]:
         from opal_kernels import film_sums
         from opal_kernels.binding import OpalError
+
+        from . import own_images
 
         try:
             groups = _by_picture(film_sums.load(path) for path in self._paths())
             for (frame, layer), films in sorted(groups.items()):
                 merged = film_sums.merge(films)
-                told = self._keep(merged, frame, layer, len(groups))
+                owner = own_images.owner_of(context.scene, context.view_layer)
+                told = self._keep(merged, frame, layer, len(groups), owner)
                 self.report({"INFO"}, f"Frame {frame}, {layer}: {len(films)} films, {len(merged.passes)} passes" + told)
+                if missing := _gaps(merged.passes):
+                    self.report({"WARNING"}, f"Frame {frame}, {layer}: the films leave out passes {missing}")
         except OpalError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
@@ -79,7 +84,7 @@ class OPAL_OT_merge(bpy.types.Operator, ImportHelper):
             raise OpalError(f"There are no films to merge: nothing in {folder} is called “{self.pattern or '*.npz'}”.")
         return chosen
 
-    def _keep(self, merged: Any, frame: int, layer: str, groups: int) -> str:
+    def _keep(self, merged: Any, frame: int, layer: str, groups: int, owner: str) -> str:
         from ..addon.film_files import with_frame
         from . import float_images
 
@@ -87,8 +92,8 @@ class OPAL_OT_merge(bpy.types.Operator, ImportHelper):
         if self.use_denoise:
             picture = _denoised(merged, picture)
         name = "Opal Merged" if groups == 1 else f"Opal Merged {layer} {frame:04d}"
-        float_images.put(name, picture)
-        told = f", in the image “{name}”"
+        image = float_images.put(name, picture, owner)
+        told = f", in the image “{image.name}”"
         if self.output:
             path = Path(with_frame(self.output, frame))
             path = path if path.suffix.lower() == ".exr" else path.with_name(path.name + ".exr")
@@ -106,6 +111,13 @@ def _by_picture(films: Iterable[Any]) -> dict[tuple[int, str], list[Any]]:
     for film in films:
         groups.setdefault((film.info.get("frame", 0), film.info.get("layer", "ViewLayer")), []).append(film)
     return groups
+
+
+def _gaps(passes: Iterable[int]) -> str:
+    """What lies between passes and is not among them, counted from 1: “3, 5–8”; empty where nothing does."""
+    here = sorted(passes)
+    holes = [(a + 2, b) for a, b in zip(here, here[1:], strict=False) if b > a + 1]
+    return ", ".join(f"{first}" if first == last else f"{first}–{last}" for first, last in holes)
 
 
 def _denoised(merged: Any, picture: Any) -> Any:

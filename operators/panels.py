@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 
-from . import compare_cycles
+from . import compare_cycles, own_images
 
 
 class _Panel(bpy.types.Panel):
@@ -48,10 +48,11 @@ class OPAL_RENDER_PT_comparison(_Panel):
             split = box.split(factor=0.45)
             split.label(text=name)
             split.label(text=value)
+        owner = own_images.owner_of(context.scene, context.view_layer)
         for name in (compare_cycles.SIDE_BY_SIDE, compare_cycles.DIFFERENCE):
-            if (image := bpy.data.images.get(name)) is not None:
+            if (image := own_images.own(name, owner)) is not None:
                 layout.template_icon(image.preview_ensure().icon_id, scale=7.0)
-                layout.label(text=f"Image “{name}”: {image.get('opal_picture', '')}")
+                layout.label(text=f"Image “{image.name}”: {image[own_images.KEY]}")
 
 
 def rows_of(result: dict[str, Any]) -> list[tuple[str, str]]:

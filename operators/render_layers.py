@@ -68,7 +68,7 @@ class OPAL_OT_render_layers(bpy.types.Operator, WritesFile):
     def execute(self, context: bpy.types.Context) -> set[str]:
         from opal_kernels.binding import OpalError
 
-        from . import float_images, layers, render_scene
+        from . import float_images, layers, own_images, render_scene
 
         if not self.layers:
             self.report({"ERROR"}, "No layer is chosen.")
@@ -76,8 +76,9 @@ class OPAL_OT_render_layers(bpy.types.Operator, WritesFile):
         try:
             rendered = render_scene.opal(context, layers.passes(self.layers))
             found = layers.pictures(rendered.films, self.layers, context.scene.render.film_transparent)
+            owner = own_images.owner_of(context.scene, context.view_layer)
             for identifier, pixels in found.items():
-                float_images.put(layer_names.image_name(identifier), pixels)
+                float_images.put(layer_names.image_name(identifier), pixels, owner)
             told = self.write(context, {layer_names.LABELS[name].replace(" ", ""): pixels for name, pixels in found.items()})
         except (render_scene.RenderFailed, OpalError) as error:
             self.report({"ERROR"}, str(error))

@@ -16,16 +16,18 @@ if [ -n "${OPAL_PYTHON:-}" ]; then
   echo "OPAL_PYTHON=$OPAL_PYTHON is not a Python $(echo "$@" | sed 's/ / or /g') with venv." >&2
   exit 1
 fi
+# Of a virtual environment the Python it stands on: the environment itself may be what is about to be made anew.
+found() { "$1" -c 'import sys; print(getattr(sys, "_base_executable", None) or sys.executable)' && exit 0; }
 for version; do
   IFS=:
   for folder in $PATH; do
     for name in "python$version" python3; do
-      [ -x "$folder/$name" ] && works "$folder/$name" "$version" && echo "$folder/$name" && exit 0
+      [ -x "$folder/$name" ] && works "$folder/$name" "$version" && found "$folder/$name"
     done
   done
   unset IFS
   for program in "${PYENV_ROOT:-$HOME/.pyenv}"/versions/"$version"*/bin/"python$version"; do
-    [ -x "$program" ] && works "$program" "$version" && echo "$program" && exit 0
+    [ -x "$program" ] && works "$program" "$version" && found "$program"
   done
 done
 echo "Opal needs Python $(echo "$@" | sed 's/ / or /g') with venv (3.13 for bpy 5.2.3, 3.11 for bpy 4.5.15); none is on PATH or under ~/.pyenv/versions: install one or set OPAL_PYTHON." >&2

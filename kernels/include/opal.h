@@ -419,7 +419,7 @@ enum {
   OPAL_PASS_SPECTRAL = 10, /* spectral_bins: radiance per nm, relative: 1 throughout has luminance 1 */
   OPAL_PASS_NOISE = 11,    /* 1: estimated standard error of the luminance */
   /* Layers for compositing over a picture that another engine made (src/integrator/layers.h); they add up to Combined,
-   * Behind apart. 4 each: premultiplied, alpha is the share of camera rays whose first event fell there. */
+   * Behind and Dimmed apart. 4 each: premultiplied, alpha is the share of camera rays whose first event fell there. */
   OPAL_PASS_LAYER_BASE = 12,   /* ordinary surfaces without caustics, dimmed by media, black where gems would light them */
   OPAL_PASS_LAYER_BEHIND = 13, /* the base as it would be if media before the camera took nothing away */
   OPAL_PASS_LAYER_CAUSTICS =
@@ -427,7 +427,8 @@ enum {
   OPAL_PASS_LAYER_GEMS = 15,    /* gems and what is seen through them */
   OPAL_PASS_LAYER_MEDIA = 16,   /* what media scatter or give off towards the camera */
   OPAL_PASS_LAYER_RAINBOW = 17, /* the same of media that were set to the layer of rainbows */
-  OPAL_PASS_COUNT = 18
+  OPAL_PASS_LAYER_DIMMED = 18,  /* the base again, of the paths of Behind: over it, what media let through */
+  OPAL_PASS_COUNT = 19
 };
 
 /* Writes the region's pixels, rows from the bottom up, interleaved channels. */

@@ -155,6 +155,7 @@ class Pass(IntEnum):
     LAYER_GEMS = 15
     LAYER_MEDIA = 16
     LAYER_RAINBOW = 17
+    LAYER_DIMMED = 18
 
 
 class MediumLayer(IntEnum):
@@ -184,6 +185,7 @@ PASS_CHANNELS = {
     Pass.LAYER_GEMS: 4,
     Pass.LAYER_MEDIA: 4,
     Pass.LAYER_RAINBOW: 4,
+    Pass.LAYER_DIMMED: 4,
 }
 
 IDENTITY = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0))

@@ -68,6 +68,18 @@ def test_films_of_different_pictures_are_refused(tmp_path):
         bpy.ops.opal.merge(directory=str(tmp_path), pattern="c.npz")
 
 
+def test_passes_that_are_missing_between_films_are_told(tmp_path, capfd):
+    scene = layer_stage.build(passes=1, width=8, height=6)
+    scene.opal.use_film_file, scene.opal.film_path, scene.opal.photons_per_pass = True, str(tmp_path / "film.npz"), 0
+    for first, passes in ((1, 1), (3, 1), (7, 2)):
+        scene.opal.pass_first, scene.opal.passes = first, passes
+        stage.render(tmp_path)
+    capfd.readouterr()
+    assert bpy.ops.opal.merge(directory=str(tmp_path), pattern="film_*.npz") == {"FINISHED"}
+    said = capfd.readouterr().out
+    assert "leave out passes 2, 4–6" in said, said
+
+
 def test_a_film_that_cannot_be_written_is_a_sentence_and_the_picture_stands(tmp_path):
     scene = layer_stage.build(passes=1, width=8, height=6)
     blocked = tmp_path / "file"

@@ -2,6 +2,7 @@
 """The comparison with Cycles: what it measures, shows and writes."""
 
 import json
+import types
 
 import layer_stage
 import numpy as np
@@ -45,6 +46,44 @@ def test_a_scene_that_both_engines_render_is_equal_within_noise(tmp_path):
         assert size is None or tuple(image.size) == size
     sides = layer_stage.pixels("Opal Side by Side")
     np.testing.assert_allclose(sides[:, :48, :3].mean(), sides[:, 50:, :3].mean(), rtol=0.01)
+
+
+def test_the_panel_shows_opals_picture_and_not_a_strangers_of_that_name():
+    import opal_source.operators.own_images as own_images  # the installed extension's
+
+    mine = bpy.data.images.new("Opal Side by Side", 3, 3)
+    ordinary(8, 6).opal.passes = 1
+    assert bpy.ops.opal.compare_cycles() == {"FINISHED"}
+    owner = own_images.owner_of(bpy.context.scene, bpy.context.view_layer)
+    found = own_images.own("Opal Side by Side", owner)
+    assert found is not None and found != mine and tuple(found.size) == (18, 6)
+    drawn = shown_by(bpy.types.OPAL_RENDER_PT_comparison)
+    assert any(found.name in text for text in drawn) and not any(f"“{mine.name}”" in text for text in drawn), drawn
+
+
+class Texts(list):
+    """A layout that keeps the words that are put into it."""
+
+    def label(self, text="", **_):
+        self.append(text)
+
+    def operator(self, *_, **__):
+        return types.SimpleNamespace()
+
+    def template_icon(self, *_, **__):
+        pass
+
+    def row(self, **_):
+        return self
+
+    box = column = split = row
+
+
+def shown_by(panel):
+    """The words of a panel."""
+    texts = Texts()
+    panel.draw(types.SimpleNamespace(layout=texts), bpy.context)
+    return texts
 
 
 def test_the_difference_is_red_where_opal_is_brighter_and_blue_where_it_is_darker():

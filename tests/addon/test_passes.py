@@ -83,6 +83,23 @@ def test_border_renders_the_same_pixels_as_the_whole_frame(tmp_path):
     np.testing.assert_array_equal(cropped, whole[4:16, 5:15])
 
 
+@pytest.mark.parametrize("percent", [100, 61])
+@pytest.mark.parametrize("low, high", [(0.39, 0.58), (0.07, 0.29), (0.11, 0.93)])
+def test_a_border_has_the_size_that_blender_gives_it(tmp_path, low, high, percent):
+    """Every pixel of the cropped picture is rendered: in double precision 0.58 of 300 pixels would be one less."""
+    scene = stage.scene(width=300, height=240, passes=1, samples=1)
+    stage.camera()
+    stage.world()
+    scene.render.resolution_percentage = percent
+    scene.render.use_border = scene.render.use_crop_to_border = True
+    scene.render.border_min_x = scene.render.border_min_y = low
+    scene.render.border_max_x = scene.render.border_max_y = high
+    picture = stage.render(tmp_path)
+    frame = stage.addon("settings").frame_of(scene.render)
+    assert picture.shape[1::-1] == frame.region_size
+    assert (picture[..., :3] > 0).all(), f"{(picture[..., 1] <= 0).sum()} pixels are black"
+
+
 def test_resolution_percentage_scales_the_frame(tmp_path):
     scene = stage.scene(width=33, height=21)
     stage.camera()

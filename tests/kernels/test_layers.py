@@ -10,7 +10,7 @@ from opal_kernels.scene import Scene
 from transport_scenes import IDENTITY, box, looking_down, perspective, placed, sphere, square
 
 LAYERS = (Pass.LAYER_BASE, Pass.LAYER_CAUSTICS, Pass.LAYER_GEMS, Pass.LAYER_MEDIA, Pass.LAYER_RAINBOW)
-KEPT = (*LAYERS, Pass.LAYER_BEHIND)
+KEPT = (*LAYERS, Pass.LAYER_BEHIND, Pass.LAYER_DIMMED)
 SIZE = 24
 
 
@@ -61,6 +61,7 @@ def test_without_gems_and_media_there_is_only_the_base():
     got = films(lambda scene: None)
     np.testing.assert_array_equal(got[Pass.LAYER_BASE], got[Pass.COMBINED])
     np.testing.assert_array_equal(got[Pass.LAYER_BEHIND], got[Pass.COMBINED])
+    np.testing.assert_array_equal(got[Pass.LAYER_DIMMED], got[Pass.COMBINED])
 
 
 def test_the_base_under_a_gem_is_black_and_its_caustic_is_added_light():
@@ -77,10 +78,21 @@ def test_a_medium_dims_what_lies_behind_by_beer_and_lambert(rainbow):
     """The quotient of the two bases is exp(-0.4 x 1 m / cos) without noise, because both come from the same paths."""
     got = films(lambda scene: add_fog(scene, rainbow))
     y, x = SIZE // 2, SIZE // 2
-    ratio = got[Pass.LAYER_BASE][y, x] / got[Pass.LAYER_BEHIND][y, x]
+    ratio = got[Pass.LAYER_DIMMED][y, x] / got[Pass.LAYER_BEHIND][y, x]
     np.testing.assert_allclose(ratio, np.exp(-0.4), rtol=2e-3)
+    thick = films(lambda scene: add_fog(scene, rainbow, extinction=9.0))
+    ratio = thick[Pass.LAYER_DIMMED][y, x] / thick[Pass.LAYER_BEHIND][y, x]
+    np.testing.assert_allclose(ratio, np.exp(-9.0), rtol=5e-3, err_msg="where hardly a path comes through by itself")
     own, other = (Pass.LAYER_RAINBOW, Pass.LAYER_MEDIA) if rainbow else (Pass.LAYER_MEDIA, Pass.LAYER_RAINBOW)
     assert got[own][..., :3].min() > 0 and not got[other].any()
+
+
+def test_the_base_and_its_clear_paths_are_the_same_light():
+    """Dimmed, of paths that fog does not stop, is what Base counts of those that it happens to let pass."""
+    got = films(add_everything, passes=16)
+    base, dimmed = got[Pass.LAYER_BASE].mean((0, 1)), got[Pass.LAYER_DIMMED].mean((0, 1))
+    np.testing.assert_allclose(dimmed, base, rtol=0.03)
+    assert (got[Pass.LAYER_BEHIND].mean((0, 1)) > 1.2 * base).all()
 
 
 def test_after_a_diffuse_bounce_glossy_light_is_added_light():

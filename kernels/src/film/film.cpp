@@ -27,7 +27,8 @@ int pass_channels(int pass, int spectral_bins) {
     case OPAL_PASS_LAYER_CAUSTICS:
     case OPAL_PASS_LAYER_GEMS:
     case OPAL_PASS_LAYER_MEDIA:
-    case OPAL_PASS_LAYER_RAINBOW: return 4;
+    case OPAL_PASS_LAYER_RAINBOW:
+    case OPAL_PASS_LAYER_DIMMED: return 4;
     case OPAL_PASS_DEPTH:
     case OPAL_PASS_NOISE: return 1;
     case OPAL_PASS_SPECTRAL: return spectral_bins;

@@ -57,7 +57,7 @@ class MeanDepths;
 
 class CameraPath {
  public:
-  CameraPath(const PassContext &pass, uint32_t x, uint32_t y, uint32_t sample, RayCounts &counts);
+  CameraPath(const PassContext &pass, uint32_t x, uint32_t y, uint32_t sample, RayCounts &counts, bool clear);
   PathLight trace();
 
  private:
@@ -175,7 +175,7 @@ class CameraPath {
   bool gathers() const;
   void gather();
   // What photons scatter into the ray on its way through media, seen at first hand too.
-  void gather_volume(const CameraWay &way, float t_end, bool rainbow, uint32_t dimension);
+  void gather_volume(const CameraWay &way, float t_end, int layer, uint32_t dimension);
   // What bounds the way through the media, if it ends where the ray meets something.
   MediumFaces faces(float t_end) const;
   // Follows a ray that has left a surface.
@@ -199,8 +199,11 @@ class CameraPath {
   // is taken or given off.
   int layer_of(const MediumHere &here, const Vec3 &light, const Vec3 &onward) const;
   int layer_of(const MediumHere &here) const { return keeps_layers_ ? here.layer_of(w_, 0) : 0; }
-  // Transmittance of the media that vary between the ray's origin and t_end, by quadrature: it only weighs what is measured.
-  Spectrum marched_transmittance(float t_end) const;
+  // Media that the layers' base leaves out, before the first event: a clear path is not stopped by them.
+  void part_veil(float t_end);
+  void see_through(float t, bool ends);
+  // What they let through between the ray's origin and t; by quadrature where they vary, for it only weighs what is measured.
+  Spectrum veil_transmittance(float t) const;
   void add_to_layers(const Spectrum &radiance, const Vec3 &rgb);
   void finish_layers();
   void note_guides();
@@ -212,6 +215,7 @@ class CameraPath {
   const uint32_t index_;
   const Wavelengths &w_;
   const bool keeps_layers_;
+  const bool clear_;  // not stopped by media before its first event; brings nothing but light for Behind and Dimmed
   RayCounts &counts_;
   Ray ray_;
   Hit hit_;    // what it meets
@@ -220,6 +224,7 @@ class CameraPath {
   InteriorStack interior_;
   MediumSet entered_;  // whose boundaries it has come through
   MediumSet media_;    // those that are there
+  MediumSet veil_;     // of a clear path: those that are there besides
   const Material *material_ = nullptr;
   Surface surface_;
   LastEvent last_;

@@ -52,20 +52,37 @@ int CameraPath::layer_of(const MediumHere &here, const Vec3 &light, const Vec3 &
   return keeps_layers_ ? here.layer_of(w_, dot(light, onward)) : 0;
 }
 
-Spectrum CameraPath::marched_transmittance(float t_end) const {
+void CameraPath::part_veil(float t_end) {
+  veil_ = {};
+  if (layers_.any_event()) return;
+  MediumSet stopping;
+  for (int i = 0; i < media_.count(); ++i) {
+    const MediumSet::Entry &entry = media_[i];
+    (scene_.media[size_t(entry.medium)].layer == OPAL_MEDIUM_LAYER_BASE ? stopping : veil_).enter(entry.instance, entry.medium);
+  }
+  if (!veil_.empty()) light_.veiled = true;
+  if (clear_) media_ = stopping;
+}
+
+void CameraPath::see_through(float t, bool ends) {
+  if (!layers_.any_event() && !veil_.empty()) layers_.see_through(veil_transmittance(t), ends);
+}
+
+Spectrum CameraPath::veil_transmittance(float t) const {
+  if (StratifiedMedia::holds(scene_, veil_)) return StratifiedMedia(scene_, veil_, w_, ray_).transmittance(t);
   constexpr int kSteps = 128;
-  const RayMedia media(scene_, media_, w_, ray_);
+  const RayMedia media(scene_, veil_, w_, ray_);
   Spectrum depth(0.0f);
-  if (std::isfinite(t_end)) {
-    for (int i = 0; i < kSteps; ++i) depth += media.at((float(i) + 0.5f) * t_end / kSteps).replaced;
-    return transmittance_over(depth, t_end / kSteps);
+  if (std::isfinite(t)) {
+    for (int i = 0; i < kSteps; ++i) depth += media.at((float(i) + 0.5f) * t / kSteps).extinction;
+    return transmittance_over(depth, t / kSteps);
   }
   // To infinity in steps that grow, from centimetres to a thousand kilometres.
   constexpr float kFirst = 1e-2f, kGrowth = 1.155f;
   float from = 0;
   for (int i = 0; i < kSteps; ++i) {
     const float to = kFirst * std::pow(kGrowth, float(i));
-    depth += media.at(0.5f * (from + to)).replaced * (to - from);
+    depth += media.at(0.5f * (from + to)).extinction * (to - from);
     from = to;
   }
   return transmittance_over(depth, 1);
@@ -85,16 +102,17 @@ void CameraPath::add_to_layers(const Spectrum &radiance, const Vec3 &rgb) {
   const Spectrum kept = radiance * share;
   const Vec3 base = to_rgb(kept, w_);
   out[Layer::Base] += base;
+  out[Layer::Behind] += base;
+  out[Layer::Dimmed] += clear_ ? to_rgb(kept * layers_.through(), w_) : base;
   out[layers_.added()] += rgb - base;
-  Spectrum behind = kept;
-  for (int i = 0; i < kWavelengths; ++i) behind[i] /= std::max(layers_.camera_through()[i], 1e-6f);
-  out[Layer::Behind] += to_rgb(behind, w_);
 }
 
 void CameraPath::finish_layers() {
-  light_.layers.alpha[size_t(layers_.first())] += light_.alpha;
-  if (layers_.first() == Layer::Base)
-    light_.layers.alpha[size_t(Layer::Behind)] += light_.alpha / std::max(layers_.camera_through().average(), 1e-6f);
+  LayerLight &out = light_.layers;
+  out.alpha[size_t(layers_.first())] += light_.alpha;
+  if (layers_.first() != Layer::Base) return;
+  out.alpha[size_t(Layer::Behind)] += light_.alpha;
+  out.alpha[size_t(Layer::Dimmed)] += light_.alpha * layers_.through().average();
 }
 
 void CameraPath::note_guides() {

@@ -35,7 +35,6 @@ bool CameraPath::travel_in_medium(float t_end) {
     const Spectrum depth = media.depth(t_end);
     if (std::isfinite(depth[0])) {
       pass_unscattered(depth);
-      if (keeps_layers_) layers_.pass_media(media.replaced_transmittance(t_end));
     } else {
       layers_.meet_medium(layer_of(full));
       alive_ = false;
@@ -69,6 +68,7 @@ bool CameraPath::travel_in_medium(float t_end) {
     alive_ = false;
     return true;
   }
+  if (clear_) see_through(t, true);
   layers_.meet_medium(layer_of(here, -direction, -forward));
   last_ = {};
   last_.light_was_sampled = true;
@@ -157,7 +157,6 @@ bool CameraPath::travel_in_varying_medium(float t_end) {
     take();
     alive_ = throughput_.is_finite() && !throughput_.is_zero();
     if (!alive_) layers_.meet_medium(layer_of(here));
-    else if (keeps_layers_ && bounces_ == 0) layers_.pass_media(marched_transmittance(t_end));
     return !alive_;
   }
   if (final_ray_ || here.scattering.is_zero()) {
@@ -176,6 +175,7 @@ bool CameraPath::travel_in_varying_medium(float t_end) {
   last_.transmissive = true;
   const float straight = here.extinction.average() * std::exp(-depth);
   if (!chosen.empty()) last_.elsewhere = chosen.density(t) / std::max(straight, 1e-30f);
+  if (clear_) see_through(t, true);
   connect_from_medium(here, forward, dimension);
 
   const Vec3 direction = sample_onward(here, forward, dimension, last_.phase);
@@ -243,6 +243,7 @@ void CameraPath::connect_at(const GatherDistance<MeanDepths> &chosen, float t_en
   Spectrum share = there.share(sample.dirac ? Spectrum(0.0f) : phase, sample.pdf);
   for (int i = 0; i < kWavelengths; ++i) share[i] = 1 - share[i];
   const Spectrum scattered = here.scattering * here.scattered(w_, -sample.wi, -ray_.direction, filter());
+  if (clear_) see_through(t, false);
   const InMedium scope(*this, layer_of(here, -sample.wi, -ray_.direction));
   add_connected(walk.throughput * scattered * share * sample.radiance / distance_pdf, sample, p, walk.light_pdf, Spectrum(0.0f),
                 dimension + kDimMediumLight);
@@ -295,6 +296,7 @@ void CameraPath::gather_along(const StratifiedMedia &media, float t_end, uint32_
   Spectrum pdf = path_pdf_ * passed.light_pdf * (distance_pdf * sample.pdf);
   if (!sample.dirac) pdf += path_pdf_ * here.extinction * through * phase * passed.path_pdf;
   contribution *= uplift(passed.surfaces, w_) * passed.medium / pdf.average();
+  if (clear_) see_through(t, false);
   const InMedium scope(*this, layer_of(here, -sample.wi, -ray_.direction));
   add_scattered(contribution, false);
 }
@@ -312,12 +314,13 @@ void CameraPath::gather() {
   layers_ = before;
 }
 
-void CameraPath::gather_volume(const CameraWay &way, float t_end, bool rainbow, uint32_t dimension) {
+void CameraPath::gather_volume(const CameraWay &way, float t_end, int layer, uint32_t dimension) {
   if (pass_.volume.empty() || !gathers_after_rough(settings_.photons_carry, rough_events_)) return;
   const Spectrum radiance = volume_radiance(pass_, {ray_.origin, ray_.direction, t_end, way, media_key(media_), filter(), w_,
                                                     index_, sampler_.get1d(dimension + kDimMarch), faces(t_end)});
   if (radiance.is_zero()) return;
-  const InMedium scattered(*this, rainbow);
+  const InMedium scattered(*this, layer);
+  layers_.meet_photons();
   add_bounced(throughput_ * radiance / path_pdf_.average(), settings_.photons_carry == OPAL_CARRY_CAUSTICS);
 }
 

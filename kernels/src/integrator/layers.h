@@ -6,6 +6,10 @@
 // scatter none, and nothing but diffuse lobes scatters after a diffuse reflection (no caustics, as Cycles understands it).
 // Everything else falls into one layer by the first event that the camera sees: a gem, a medium, a rainbow, or an ordinary
 // surface, whose added light is sorted by what brought it. The layers' sum is the picture, path by path.
+//
+// What media before the camera let through is the quotient of two more films, Dimmed and Behind: the base with those media and
+// without. Both are of the same clear paths, which no such medium stops on their way to the first event, so that the quotient
+// is as good where next to nothing comes through as where nearly all does.
 #pragma once
 
 #include "core/spectrum.h"
@@ -17,15 +21,18 @@
 namespace opal {
 
 // In the order of OPAL_PASS_LAYER_BASE onward.
-enum class Layer : uint8_t { Base, Behind, Caustics, Gems, Media, Rainbow };
-inline constexpr int kLayers = 6;
+enum class Layer : uint8_t { Base, Behind, Caustics, Gems, Media, Rainbow, Dimmed };
+inline constexpr int kLayers = 7;
 
-// Light and alpha by layer. Behind is the base without what media take away between camera and first surface.
+// Light and alpha by layer.
 struct LayerLight {
   std::array<Vec3, kLayers> rgb{};
   std::array<float, kLayers> alpha{};
 
   Vec3 &operator[](Layer layer) { return rgb[size_t(layer)]; }
+  void take(Layer layer, const LayerLight &b) {
+    rgb[size_t(layer)] = b.rgb[size_t(layer)], alpha[size_t(layer)] = b.alpha[size_t(layer)];
+  }
   void operator+=(const LayerLight &b) {
     for (size_t i = 0; i < kLayers; ++i) rgb[i] += b.rgb[i], alpha[i] += b.alpha[i];
   }
@@ -34,9 +41,11 @@ struct LayerLight {
 // What one camera path has met so far.
 class LayerTracker {
  public:
-  // The camera's ray came through media before its first event.
-  void pass_media(const Spectrum &transmittance) {
-    if (!any_event_) camera_through_ *= transmittance;
+  // Of a clear path: what media that do not stop it let through of its present segment up to where something is met, and, with
+  // true, that the segment ends there.
+  void see_through(const Spectrum &transmittance, bool ends) {
+    segment_ = transmittance;
+    if (ends) through_ *= segment_, segment_ = Spectrum(1.0f);
   }
 
   void meet_gem() {
@@ -76,13 +85,16 @@ class LayerTracker {
   Layer first() const { return first_; }
   Layer added() const { return added_; }
   const Spectrum &base_share() const { return base_share_; }
-  const Spectrum &camera_through() const { return camera_through_; }
+  bool any_event() const { return any_event_; }
+  // Whether the base may show anything more of this path.
+  bool shows_base() const { return first_ == Layer::Base && !base_share_.is_zero(); }
+  Spectrum through() const { return through_ * segment_; }
 
  private:
   Layer first_ = Layer::Base;      // of the first event; Base: an ordinary surface, or none
   Layer added_ = Layer::Caustics;  // where light on ordinary surfaces goes that the base does not have
   bool any_event_ = false, after_diffuse_ = false;
-  Spectrum base_share_{1.0f}, camera_through_{1.0f};
+  Spectrum base_share_{1.0f}, through_{1.0f}, segment_{1.0f};
 };
 
 }  // namespace opal

@@ -36,6 +36,10 @@ enum Stream : uint32_t {
 inline bool keeps_layers(const opal_render_settings &settings) {
   return (settings.passes >> OPAL_PASS_LAYER_BASE & ((1u << kLayers) - 1)) != 0;
 }
+// Whether it asks for what media let through.
+inline bool keeps_clear(const opal_render_settings &settings) {
+  return (settings.passes & (1u << OPAL_PASS_LAYER_BEHIND | 1u << OPAL_PASS_LAYER_DIMMED)) != 0;
+}
 
 struct PassContext {
   PassContext(const Scene &scene_, const opal_render_settings &settings_, const PixelFilter &filter_, int pass_)

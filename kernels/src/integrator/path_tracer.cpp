@@ -4,7 +4,7 @@
 
 namespace opal {
 
-CameraPath::CameraPath(const PassContext &pass, uint32_t x, uint32_t y, uint32_t sample, RayCounts &counts)
+CameraPath::CameraPath(const PassContext &pass, uint32_t x, uint32_t y, uint32_t sample, RayCounts &counts, bool clear)
     : pass_(pass),
       scene_(pass.scene),
       settings_(pass.settings),
@@ -12,6 +12,7 @@ CameraPath::CameraPath(const PassContext &pass, uint32_t x, uint32_t y, uint32_t
       index_(PassContext::wavelength_index(sampler_.get1d(kDimWavelength))),
       w_(pass.wavelengths[index_]),
       keeps_layers_(keeps_layers(settings_)),
+      clear_(clear),
       counts_(counts) {
   const Vec2 offset = pass.filter.sample(sampler_.get2d(kDimFilter));
   const float film_x = (float(x) + 0.5f + offset.x) / float(settings_.width);
@@ -29,7 +30,7 @@ CameraPath::CameraPath(const PassContext &pass, uint32_t x, uint32_t y, uint32_t
     const Spectrum n = index_of_refraction(scene_, interior_.current(), w_);
     throughput_ /= n * n;
   }
-  ++counts_.camera;
+  if (!clear_) ++counts_.camera;
 }
 
 PathLight CameraPath::trace() {
@@ -43,12 +44,17 @@ PathLight CameraPath::trace() {
 }
 
 void CameraPath::step() {
+  if (clear_ && !layers_.shows_base()) {
+    alive_ = false;
+    return;
+  }
   const Hit hit = hit_ = next_hit(scene_, ray_, ray_kind_);
   ++counts_.path;
   if (hit.valid()) absorb(scene_, interior_, hit.t, w_, throughput_);
   if (escapes(scene_, ray_, hit)) entered_.leave_bodies();
   media_ = media_that_fill(scene_, entered_, interior_);
   counts_.media_passed_over += media_.passed_over();
+  if (keeps_layers_) part_veil(hit.t);
   if (!media_.empty()) {
     trail_.close();
     if (travel_in_medium(hit.t)) return;
@@ -56,6 +62,7 @@ void CameraPath::step() {
     if (trail_.open() && trail_.ends(scene_, hit)) bring_followers();
     meet_lamps(hit.t, nullptr);
   }
+  if (clear_) see_through(hit.t, true);
   if (!hit.valid()) {
     escape();
     return;
@@ -101,6 +108,7 @@ void CameraPath::meet_lamps(float t_end, const StratifiedMedia *media) {
   while (intersect_lamps(scene_, ray_, after, t_end, ray_kind_, w_, lamp)) {
     const SourceId source{SourceKind::Lamp, lamp.lamp};
     const Unscattered passed(*this, media ? media->depth(lamp.t) : Spectrum(0.0f));
+    if (clear_) see_through(lamp.t, false);
     add_met(source, lamp.radiance, ray_.origin + ray_.direction * lamp.t, lamp.normal, lamp.t + travelled_);
     after = std::nextafter(lamp.t, kInfinity);
   }
@@ -355,7 +363,11 @@ bool CameraPath::passes(Ray shadow, const LightSample &sample, uint32_t dimensio
 }
 
 PathLight trace_camera_path(const PassContext &pass, uint32_t x, uint32_t y, uint32_t sample, RayCounts &counts) {
-  return CameraPath(pass, x, y, sample, counts).trace();
+  return CameraPath(pass, x, y, sample, counts, false).trace();
+}
+
+LayerLight trace_clear_path(const PassContext &pass, uint32_t x, uint32_t y, uint32_t sample, RayCounts &counts) {
+  return CameraPath(pass, x, y, sample, counts, true).trace().layers;
 }
 
 }  // namespace opal

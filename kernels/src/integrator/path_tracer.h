@@ -15,7 +15,8 @@ struct PathLight {
   Vec3 caustics;  // a rough event lit through sharp ones
   Vec3 medium;    // whose first event, or whose source, is in a medium
   float alpha = 1;
-  LayerLight layers;  // the same light by layer, if the film keeps them
+  LayerLight layers;    // the same light by layer, if the film keeps them
+  bool veiled = false;  // the camera looks through media that the layers' base leaves out
   // Guides, of the first event that is not straight through.
   Vec3 normal, position, albedo;
   float depth = 0;
@@ -32,5 +33,8 @@ struct RayCounts {
 
 // sample: which of the pixel's in the whole render.
 PathLight trace_camera_path(const PassContext &pass, uint32_t x, uint32_t y, uint32_t sample, RayCounts &counts);
+// The same path with the same random numbers, as it would have gone without the media before its first event: its light is for
+// Behind and Dimmed alone.
+LayerLight trace_clear_path(const PassContext &pass, uint32_t x, uint32_t y, uint32_t sample, RayCounts &counts);
 
 }  // namespace opal

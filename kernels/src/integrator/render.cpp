@@ -153,8 +153,14 @@ bool Render::trace_camera_of(const PassContext &pass, PassBuffer &buffer, const 
                                       : plan_.samples(x + settings_.region[0], y + settings_.region[1], settings_.seed);
     const float scale = 1 / float(samples);
     for (int s = 0; s < samples; ++s) {
-      const PathLight light = trace_camera_path(pass, uint32_t(x + settings_.region[0]), uint32_t(y + settings_.region[1]),
-                                                uint32_t(pass.pass) * uint32_t(samples) + uint32_t(s), counts);
+      const uint32_t film_x = uint32_t(x + settings_.region[0]), film_y = uint32_t(y + settings_.region[1]);
+      const uint32_t sample = uint32_t(pass.pass) * uint32_t(samples) + uint32_t(s);
+      PathLight light = trace_camera_path(pass, film_x, film_y, sample, counts);
+      if (light.veiled && keeps_clear(settings_)) {
+        const LayerLight clear = trace_clear_path(pass, film_x, film_y, sample, counts);
+        light.layers.take(Layer::Behind, clear);
+        light.layers.take(Layer::Dimmed, clear);
+      }
       emission += light.emission, direct += light.direct, indirect += light.indirect, caustics += light.caustics;
       medium += light.medium;
       layers += light.layers;

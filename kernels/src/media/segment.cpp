@@ -17,7 +17,6 @@ MediumHere medium_here(const Scene &scene, const MediumSet &set, const Wavelengt
     here.extinction += extinction;
     if (each) each[i] = {extinction, -1};
     here.any_layer = medium.layer;
-    if (medium.layer != OPAL_MEDIUM_LAYER_BASE) here.replaced += extinction;
     here.emission += table(medium.emission);
     const Spectrum scattering = table(medium.scattering);
     if (scattering.is_zero()) continue;

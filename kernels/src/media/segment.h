@@ -12,8 +12,7 @@ namespace opal {
 // What a ray is in at the path's wavelengths.
 struct MediumHere {
   Spectrum extinction{0.0f}, scattering{0.0f}, emission{0.0f};
-  Spectrum replaced{0.0f};  // of the extinction, by media that the layers' base leaves out
-  struct Scatterer {        // one of the media
+  struct Scatterer {  // one of the media
     const PhaseFunction *phase;
     Spectrum scattering;
     uint8_t layer;  // OPAL_MEDIUM_LAYER_*

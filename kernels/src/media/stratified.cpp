@@ -78,7 +78,6 @@ StratifiedMedia::StratifiedMedia(const Scene &scene, const MediumSet &set, const
     Part &part = parts_.add();
     part.medium = each[i];
     part.mean = each[i].extinction.average();
-    part.replaced = medium.layer != OPAL_MEDIUM_LAYER_BASE;
     if (medium.density.kind != DensityKind::Height) continue;
     homogeneous_ = false;
     Vec3 origin = ray.origin, direction = ray.direction;
@@ -98,12 +97,11 @@ StratifiedMedia::StratifiedMedia(const Scene &scene, const MediumSet &set, const
 const MediumHere &StratifiedMedia::at(float t, MediumHere &scratch) const {
   if (homogeneous_) return full_;
   scratch = full_;
-  scratch.extinction = scratch.scattering = scratch.replaced = Spectrum(0.0f);
+  scratch.extinction = scratch.scattering = Spectrum(0.0f);
   for (const Part &part : parts_) {
     const float density = part.profile.density(t);
     const Spectrum extinction = part.medium.extinction * density;
     scratch.extinction += extinction;
-    if (part.replaced) scratch.replaced += extinction;
     if (part.medium.part < 0) continue;
     Spectrum &scattering = scratch.parts[part.medium.part].scattering;
     scattering *= t >= part.first && t <= part.last ? density : 0.0f;
@@ -123,14 +121,6 @@ Spectrum StratifiedMedia::depth(float t) const {
 }
 
 Spectrum StratifiedMedia::transmittance(float t) const { return exp(depth(t) * -1.0f); }
-
-Spectrum StratifiedMedia::replaced_transmittance(float t) const {
-  Spectrum sum(0.0f);
-  for (const Part &part : parts_)
-    for (int k = 0; part.replaced && k < kWavelengths; ++k)
-      if (part.medium.extinction[k] > 0) sum[k] += part.medium.extinction[k] * part.profile.depth(t);
-  return exp(sum * -1.0f);
-}
 
 float StratifiedMedia::mean_extinction(float t) const {
   float sum = 0;

@@ -47,8 +47,6 @@ class StratifiedMedia {
   // Optical depth from the origin to t, which may be infinite.
   Spectrum depth(float t) const;
   Spectrum transmittance(float t) const;
-  // Of what the layers' base leaves out.
-  Spectrum replaced_transmittance(float t) const;
   // The extinction's mean over wavelengths, its depth, and where that is reached.
   float mean_extinction(float t) const;
   float mean_depth(float t) const;
@@ -61,7 +59,6 @@ class StratifiedMedia {
     HeightProfile profile;
     OneMedium medium;
     float mean = 0;
-    bool replaced = false;
     float first = 0, last = kInfinity;  // between these distances it scatters
   };
   float reach(float depth, bool hero) const;

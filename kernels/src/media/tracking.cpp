@@ -63,7 +63,6 @@ MediumHere RayMedia::at(float t) const {
     const Medium &medium = *layer.medium;
     const Vec3 p = layer.origin + layer.direction * t;
     const float density = medium.density.at(p, layer.density);
-    const Spectrum before = here.extinction;
     here.any_layer = medium.layer;
     Spectrum scattering = p.z < layer.floor ? Spectrum(0.0f) : layer.sigma_s * density;
     here.extinction += layer.sigma_t * density;
@@ -75,7 +74,6 @@ MediumHere RayMedia::at(float t) const {
     }
     if (layer.absorption_colors) here.extinction += colors(layer.absorption_colors);
     if (layer.emission_colors) here.emission += colors(layer.emission_colors) * w_.d65;
-    if (medium.layer != OPAL_MEDIUM_LAYER_BASE) here.replaced += here.extinction - before;
     if (scattering.is_zero()) continue;
     here.scattering += scattering;
     here.parts.add(layer.phase, scattering, medium.layer);
