@@ -144,17 +144,18 @@ class _FinalRender:
         )
         try:
             motion = self.settings.motion_blur
-            start, end = _shutter(self.scene.render) if motion else (0.0, 0.0)
             frame, subframe = self.scene.frame_current, self.scene.frame_subframe
-            if motion:
-                self._go_to(frame + subframe + start)
+            opening, middle, close = (frame + subframe + time for time in _shutter(self.scene.render))
+            if motion and middle != frame + subframe:
+                self._go_to(middle)
             snapshot = builder.read(self.depsgraph)
             matrix = self._camera_matrix()
-            matrix_end = None
+            matrix_ends = []
             if motion:
-                self._go_to(frame + subframe + end)
-                builder.read_end(self.depsgraph, snapshot)
-                matrix_end = self._camera_matrix()
+                for time in (opening, close):
+                    self._go_to(time)
+                    builder.read_motion(self.depsgraph, snapshot)
+                    matrix_ends.append(self._camera_matrix())
                 self.engine.frame_set(frame, subframe)
             camera = camera_from_object(
                 self._camera(),
@@ -162,7 +163,7 @@ class _FinalRender:
                 self.frame.width,
                 self.frame.height,
                 matrix=matrix,
-                matrix_end=matrix_end,
+                matrix_ends=matrix_ends,
                 report=self.report.add,
             )
             builder.rain.look(camera)
@@ -343,11 +344,11 @@ class _FinalRender:
             self.report.add("", str(error))
 
 
-def _shutter(render: Any) -> tuple[float, float]:
-    """Shutter open and close in frames relative to the current one."""
-    length = render.motion_blur_shutter
-    start = {"START": 0.0, "CENTER": -0.5 * length, "END": -length}[render.motion_blur_position]
-    return start, start + length
+def _shutter(render: Any) -> tuple[float, float, float]:
+    """Shutter open, middle and close in frames relative to the current one."""
+    half = 0.5 * render.motion_blur_shutter
+    middle = {"START": half, "CENTER": 0.0, "END": -half}[render.motion_blur_position]
+    return middle - half, middle, middle + half
 
 
 def _put(result: Any, name: str, pixels: np.ndarray) -> None:

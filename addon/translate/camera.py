@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from opal_kernels import camera as optics
@@ -90,7 +90,7 @@ def _lens(camera_object: Any, scene: Any, matrix: Any, report: Report) -> tuple[
 
 def _refuse_what_is_not_finite(camera_object: Any, matrices: Iterable[Any], fields: dict[str, Any]) -> None:
     data = camera_object.data
-    wrong = [misplaced_by(camera_object) for m in matrices if m is not None and not matrix_is_finite(m)]
+    wrong = [misplaced_by(camera_object) for m in matrices if not matrix_is_finite(m)]
     wrong += [label for name, label in _NUMBERS if not all_finite([getattr(data, name, 0.0)])]
     if wrong or not all_finite(fields.values()):
         wrong.append("Depth of Field")
@@ -104,7 +104,7 @@ def camera_from_object(
     height: int,
     *,
     matrix: Any = None,
-    matrix_end: Any = None,
+    matrix_ends: Sequence[Any] = (),
     report: Report = _ignore,
 ) -> Camera:
     """The camera of a final render.
@@ -117,8 +117,10 @@ def camera_from_object(
         Gives the pixel aspect.
     width, height : int
         Pixels of the full frame, resolution percentage applied.
-    matrix, matrix_end : Matrix, optional
-        Camera to world at shutter open and close; the object's own, and no motion, by default.
+    matrix : Matrix, optional
+        Camera to world, in the middle of the shutter; the object's own by default.
+    matrix_ends : sequence of Matrix
+        The same at shutter open and close, or nothing: it stands still.
     report : callable
         Takes a name and a sentence for what cannot be kept.
 
@@ -129,11 +131,13 @@ def camera_from_object(
     """
     matrix = camera_object.matrix_world if matrix is None else matrix
     window, fields = _lens(camera_object, scene, matrix, report)
-    _refuse_what_is_not_finite(camera_object, (matrix, matrix_end), fields)
+    _refuse_what_is_not_finite(camera_object, (matrix, *matrix_ends), fields)
     aspect = (scene.render.pixel_aspect_x, scene.render.pixel_aspect_y)
+    start, end = map(optics.rigid, matrix_ends) if matrix_ends else (None, None)
     return Camera(
         transform=optics.rigid(matrix),
-        transform_end=None if matrix_end is None else optics.rigid(matrix_end),
+        transform_start=start,
+        transform_end=end,
         window=optics.window(width, height, pixel_aspect=aspect, **window),
         **fields,
     )

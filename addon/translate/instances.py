@@ -51,6 +51,8 @@ class Group:
         (count, 8) float32 as in `opal_instances_desc`.
     density : float
         What the coefficients of a volume are multiplied by.
+    motion : list of ndarray
+        `transforms` at shutter open and close, where they were read.
     """
 
     name: str
@@ -62,9 +64,9 @@ class Group:
     rows: np.ndarray
     transforms: np.ndarray
     object_info: np.ndarray
-    transforms_end: np.ndarray | None = None  # at shutter close
     grids: Any = None
     density: float = 1.0
+    motion: list[np.ndarray] = field(default_factory=list)
 
 
 @dataclass

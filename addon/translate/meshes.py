@@ -40,7 +40,7 @@ class MeshArrays:
     corner_tangents: np.ndarray | None = None
     material_slots: np.ndarray | None = None
     generated: np.ndarray | None = None
-    positions_end: np.ndarray | None = None
+    motion: list[np.ndarray] = field(default_factory=list)  # positions at shutter open and close, where they were read
     attributes: list[tuple[int, int, np.ndarray]] = field(default_factory=list)  # name, domain, values
     problems: list[str] = field(default_factory=list)
 

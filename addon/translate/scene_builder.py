@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """An evaluated depsgraph as a committed kernel scene.
 
-Everything Blender owns is read first (a change of frame makes it invalid), then, where there is motion blur, once more at
-the end of the shutter; only then does the kernels' scene get its meshes.
+Everything Blender owns is read first (a change of frame makes it invalid), in the middle of the shutter, then, where there is
+motion blur, what moves at its opening and at its close; only then does the kernels' scene get its meshes.
 """
 
 from __future__ import annotations
@@ -222,24 +222,30 @@ class SceneBuilder:
             for sentence in mend_gem_mesh(arrays, [NO_GEM if one is None else mine.index(one) for one in mine], what):
                 self._report.add(group.name, sentence)
 
-    def read_end(self, depsgraph: Any, snapshot: Snapshot) -> None:
-        """Reads once more what moves or deforms, at the end of the shutter; what cannot be matched stands still."""
+    def read_motion(self, depsgraph: Any, snapshot: Snapshot) -> None:
+        """Reads once more what moves or deforms, at the opening of the shutter, then at its close.
+
+        What cannot be matched is as in the middle.
+        """
         self._stage("Reading motion")
         visible = self._undisturbed(lambda: collect(depsgraph), depsgraph)
         by_rows = {(group.name, len(group.rows), int(group.rows[0])): group for group in visible.groups}
+        deformed: dict[int, np.ndarray] = {}
         for group, key in zip(snapshot.groups, snapshot.mesh_of_group, strict=True):
-            later = by_rows.get((group.name, len(group.rows), int(group.rows[0])))
-            if later is None or not np.array_equal(later.rows, group.rows):
+            then = by_rows.get((group.name, len(group.rows), int(group.rows[0])))
+            if then is None or not np.array_equal(then.rows, group.rows):
+                group.motion.append(group.transforms)
                 continue
-            group.transforms_end = later.transforms
+            group.motion.append(then.transforms)
             arrays = snapshot.meshes[key]
-            if arrays is None or arrays.positions_end is not None:
+            if arrays is None or key in deformed or not hasattr(then.mesh, "vertices"):
                 continue
-            if not hasattr(later.mesh, "vertices"):
-                continue
-            positions = read_positions(later.mesh)
+            positions = read_positions(then.mesh)
             if positions.shape == arrays.positions.shape and not np.array_equal(positions, arrays.positions):
-                arrays.positions_end = positions
+                deformed[key] = positions
+        for key, arrays in snapshot.meshes.items():
+            if arrays is not None:
+                arrays.motion.append(deformed.get(key, arrays.positions))
 
     def finish(self, snapshot: Snapshot, camera: Camera | None = None) -> Scene:
         """Hands everything to the kernels and commits."""
@@ -262,11 +268,13 @@ class SceneBuilder:
                 continue
             if key not in numbers:
                 numbers[key] = self._add_mesh(arrays, group.name)
+            start, end = group.motion or (None, None)
             first = self.scene.add_instances(
                 numbers[key],
                 group.transforms,
                 materials,
-                transforms_end=group.transforms_end,
+                transforms_start=start,
+                transforms_end=end,
                 visibility=group.visibility,
                 object_info=group.object_info,
                 holdout=group.holdout,
@@ -281,11 +289,14 @@ class SceneBuilder:
     def _add_mesh(self, arrays: MeshArrays, name: str) -> int:
         from opal_kernels import binding
 
+        deforms = any(positions is not arrays.positions for positions in arrays.motion)
+        start, end = arrays.motion if deforms else (None, None)
         number, dropped = binding.scene_add_mesh(
             self.scene.handle,
             arrays.positions,
             arrays.triangles,
-            positions_end=arrays.positions_end,
+            positions_start=start,
+            positions_end=end,
             corner_normals=arrays.corner_normals,
             corner_tangents=arrays.corner_tangents,
             material_slots=arrays.material_slots,

@@ -221,8 +221,9 @@ typedef struct opal_attribute_desc {
 
 typedef struct opal_mesh_desc {
   int32_t n_vertices, n_triangles;
-  const float *positions;        /* n_vertices x 3 */
-  const float *positions_end;    /* at shutter close, or NULL */
+  const float *positions;       /* n_vertices x 3; with motion: in the middle of the shutter */
+  const float *positions_start; /* at shutter open, and at its close: both or neither (NULL) */
+  const float *positions_end;
   const int32_t *triangles;      /* n_triangles x 3 */
   const float *corner_normals;   /* n_triangles x 3 x 3, or NULL: flat */
   const float *corner_tangents;  /* n_triangles x 3 x 4 (xyz, sign), or NULL */
@@ -266,9 +267,10 @@ enum {
 typedef struct opal_instances_desc {
   int32_t mesh;
   int32_t count;
-  const float *transforms;     /* count x 12 */
-  const float *transforms_end; /* at shutter close, or NULL */
-  const int32_t *materials;    /* material of each slot; -1: the default grey */
+  const float *transforms;       /* count x 12; with motion: in the middle of the shutter */
+  const float *transforms_start; /* at shutter open, and at its close: both or neither (NULL) */
+  const float *transforms_end;
+  const int32_t *materials; /* material of each slot; -1: the default grey */
   int32_t n_materials;
   uint32_t visibility;      /* OPAL_RAY_* bits */
   const float *object_info; /* count x 8: random 0..1, object index, material-independent colour rgba, 2 unused; or NULL */
@@ -279,7 +281,7 @@ typedef struct opal_instances_desc {
 /* Returns the index of the first instance. */
 OPAL_EXPORT int32_t opal_scene_add_instances(opal_scene *scene, const opal_instances_desc *instances);
 OPAL_EXPORT int32_t opal_scene_set_transforms(opal_scene *scene, int32_t first_instance, int32_t count, const float *transforms,
-                                              const float *transforms_end);
+                                              const float *transforms_start, const float *transforms_end);
 
 /* ---- Lights ---- */
 
@@ -325,10 +327,11 @@ enum { OPAL_CAMERA_PERSPECTIVE = 0, OPAL_CAMERA_ORTHOGRAPHIC = 1 };
 
 typedef struct opal_camera_desc {
   int32_t type;
-  int32_t blades;          /* under 3: a round aperture */
-  float transform[12];     /* camera to world, looks along -Z, Y up */
-  float transform_end[12]; /* at shutter close */
-  float window[4];         /* left, right, bottom, top of the full frame: at distance 1 (perspective) or in metres */
+  int32_t blades;            /* under 3: a round aperture */
+  float transform[12];       /* camera to world, looks along -Z, Y up; with motion: in the middle of the shutter */
+  float transform_start[12]; /* at shutter open */
+  float transform_end[12];   /* at shutter close */
+  float window[4];           /* left, right, bottom, top of the full frame: at distance 1 (perspective) or in metres */
   float clip_start, clip_end;
   float aperture_radius; /* metres, 0: pinhole */
   float focus_distance;

@@ -391,6 +391,10 @@ class Camera:
 
     Attributes
     ----------
+    transform : matrix
+        Camera to world; with motion, in the middle of the shutter.
+    transform_start, transform_end : matrix, optional
+        At shutter open and close; None is as in the middle. It turns between them, and goes straight.
     window : sequence of 4 floats
         Left, right, bottom, top of the full frame: at distance 1 (perspective) or in metres (orthographic).
     aperture_radius : float
@@ -404,6 +408,7 @@ class Camera:
     type: int = CameraType.PERSPECTIVE
     blades: int = 0
     transform: Matrix = IDENTITY
+    transform_start: Matrix | None = None
     transform_end: Matrix | None = None
     window: Sequence[float] = (-0.36, 0.36, -0.36, 0.36)
     clip_start: float = 0.0

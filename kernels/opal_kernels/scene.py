@@ -210,6 +210,7 @@ class Scene:
         positions: Any,
         triangles: Any,
         *,
+        positions_start: Any = None,
         positions_end: Any = None,
         corner_normals: Any = None,
         corner_tangents: Any = None,
@@ -222,6 +223,7 @@ class Scene:
             self.handle,
             positions,
             triangles,
+            positions_start=positions_start,
             positions_end=positions_end,
             corner_normals=corner_normals,
             corner_tangents=corner_tangents,
@@ -236,6 +238,7 @@ class Scene:
         transforms: Any,
         materials: Sequence[int] = (),
         *,
+        transforms_start: Any = None,
         transforms_end: Any = None,
         visibility: int = Ray.ALL,
         object_info: Any = None,
@@ -248,6 +251,7 @@ class Scene:
             mesh,
             transforms,
             materials,
+            transforms_start=transforms_start,
             transforms_end=transforms_end,
             visibility=visibility,
             object_info=object_info,
@@ -255,9 +259,9 @@ class Scene:
             light_group=light_group,
         )
 
-    def set_transforms(self, first_instance: int, transforms: Any, transforms_end: Any = None) -> None:
+    def set_transforms(self, first_instance: int, transforms: Any, transforms_start: Any = None, transforms_end: Any = None) -> None:
         """Moves instances; `commit` afterwards."""
-        binding.scene_set_transforms(self.handle, first_instance, transforms, transforms_end)
+        binding.scene_set_transforms(self.handle, first_instance, transforms, transforms_start, transforms_end)
 
     # ---- Light and camera ----
 

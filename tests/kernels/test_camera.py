@@ -2,6 +2,7 @@
 """The tracer's camera: where its rays go, and that points connect back to where they came from."""
 
 import ctypes
+import math
 from ctypes import c_int64
 
 import numpy as np
@@ -33,8 +34,8 @@ ORTHO_LENS = Camera(
     focus_distance=3.0,
 )
 MOVING = Camera(
-    window=(-0.4, 0.4, -0.3, 0.3), clip_start=0.1, clip_end=100.0, transform=looking((0, 1, 0), (0, 0, 0)),
-    transform_end=looking((0.2, 1, 0.1), (1, 0, 0)),
+    window=(-0.4, 0.4, -0.3, 0.3), clip_start=0.1, clip_end=100.0, transform_start=looking((0, 1, 0), (0, 0, 0)),
+    transform=looking((0.1, 1, 0.1), (0.4, 0, 0)), transform_end=looking((0.2, 1, 0.1), (1, 0, 0)),
 )  # fmt: skip
 ALL = {
     "pinhole": PINHOLE,
@@ -61,8 +62,10 @@ def struct_of(description):
         setattr(struct, name, getattr(description, name))
     struct.window[:] = [float(x) for x in description.window]
     struct.transform[:] = np.asarray(description.transform, np.float32).reshape(-1)[:12].tolist()
-    end = description.transform if description.transform_end is None else description.transform_end
-    struct.transform_end[:] = np.asarray(end, np.float32).reshape(-1)[:12].tolist()
+    for name in ("transform_start", "transform_end"):
+        end = getattr(description, name)
+        end = description.transform if end is None else end
+        getattr(struct, name)[:] = np.asarray(end, np.float32).reshape(-1)[:12].tolist()
     return struct
 
 
@@ -207,13 +210,27 @@ def test_points_behind_clipped_or_outside_are_not_seen(point, description):
     assert connect(description, [np.multiply(point, (10, 1, 1))])[1][0] == 0
 
 
-def test_moving_camera_goes_from_one_place_to_the_other_and_keeps_its_shape():
-    origin, direction, _ = rays(MOVING, np.full((3, 2), 0.5), time=[0, 0.5, 1])
-    assert origin == pytest.approx(np.array([[0, 0, 0], [0.5, 0, 0], [1, 0, 0]]), abs=1e-6)
-    ends = np.array([[0, 1, 0], [0.2, 1, 0.1] / np.linalg.norm([0.2, 1, 0.1])])
-    assert direction[[0, 2]] == pytest.approx(ends, abs=1e-6)
-    _, corner, _ = rays(MOVING, [[0, 0], [1, 0]], time=[0.5, 0.5])
+def test_moving_camera_goes_from_place_to_place_and_keeps_its_shape():
+    origin, direction, _ = rays(MOVING, np.full((5, 2), 0.5), time=[0, 0.25, 0.5, 0.75, 1])
+    assert origin == pytest.approx(np.array([[0, 0, 0], [0.2, 0, 0], [0.4, 0, 0], [0.7, 0, 0], [1, 0, 0]]), abs=1e-6)
+    keys = np.array([[0, 1, 0], [0.1, 1, 0.1] / np.linalg.norm([0.1, 1, 0.1]), [0.2, 1, 0.1] / np.linalg.norm([0.2, 1, 0.1])])
+    assert direction[[0, 2, 4]] == pytest.approx(keys, abs=1e-6)
+    _, corner, _ = rays(MOVING, [[0, 0], [1, 0]], time=[0.25, 0.25])
     assert np.dot(corner[0], corner[1]) == pytest.approx((1 - 0.16 + 0.09) / (1 + 0.16 + 0.09), abs=1e-5)
+
+
+def test_turning_camera_turns_evenly():
+    """By 150° about a slanted axis from opening to middle, which it does in halves; and no further in what is left."""
+    axis = np.array([0.3, 0.9, 0.1]) / np.linalg.norm([0.3, 0.9, 0.1])
+    k = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
+    turn = lambda angle: np.eye(3) + math.sin(angle) * k + (1 - math.cos(angle)) * k @ k  # noqa: E731  (Rodrigues)
+    placed = lambda angle: np.column_stack([turn(angle), [0, 0, 0]])  # noqa: E731
+    angle = math.radians(150)
+    camera = Camera(window=PINHOLE.window, transform_start=placed(0), transform=placed(angle), transform_end=placed(angle))
+    film = [[0.5, 0.5], [0.1, 0.2], [0.9, 0.6]]
+    before = rays(camera, film)[1]
+    for time, part in ((0.125, 0.25), (0.25, 0.5), (0.5, 1.0), (0.8, 1.0)):
+        assert rays(camera, film, time=time)[1] == pytest.approx(before @ turn(part * angle).T, abs=2e-6)
 
 
 # ---- The arithmetic of lenses ----

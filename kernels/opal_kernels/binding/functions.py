@@ -51,7 +51,7 @@ SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "opal_scene_evaluate": (c_int32, [c_void_p, POINTER(ProgramStruct), POINTER(PlacesStruct), FloatPointer]),
     "opal_scene_add_mesh": (c_int32, [c_void_p, POINTER(MeshStruct), IntPointer]),
     "opal_scene_add_instances": (c_int32, [c_void_p, POINTER(InstancesStruct)]),
-    "opal_scene_set_transforms": (c_int32, [c_void_p, c_int32, c_int32, FloatPointer, FloatPointer]),
+    "opal_scene_set_transforms": (c_int32, [c_void_p, c_int32, c_int32, FloatPointer, FloatPointer, FloatPointer]),
     "opal_scene_add_light": (c_int32, [c_void_p, POINTER(LightStruct)]),
     "opal_scene_clear_lights": (c_int32, [c_void_p]),
     "opal_scene_set_world": (c_int32, [c_void_p, POINTER(WorldStruct)]),

@@ -300,6 +300,7 @@ def scene_add_mesh(
     positions: Any,
     triangles: Any,
     *,
+    positions_start: Any = None,
     positions_end: Any = None,
     corner_normals: Any = None,
     corner_tangents: Any = None,
@@ -311,8 +312,10 @@ def scene_add_mesh(
 
     Parameters
     ----------
-    positions, positions_end : array_like
-        (n, 3) vertices at shutter open and close. Not held to be finite: their triangles are dropped.
+    positions : array_like
+        (n, 3) vertices; with motion, in the middle of the shutter. Not held to be finite: their triangles are dropped.
+    positions_start, positions_end : array_like, optional
+        (n, 3) vertices at shutter open and close: both or neither. They go straight from key to key.
     triangles : array_like
         (m, 3) vertex numbers.
     corner_normals, corner_tangents : array_like, optional
@@ -331,6 +334,8 @@ def scene_add_mesh(
     positions = as_floats("positions", positions, (None, 3), finite=False)
     triangles = as_array("triangles", triangles, np.int32, (None, 3))
     n, m = len(positions), len(triangles)
+    if positions_start is not None:
+        positions_start = as_floats("positions_start", positions_start, (n, 3), finite=False)
     if positions_end is not None:
         positions_end = as_floats("positions_end", positions_end, (n, 3), finite=False)
     if corner_normals is not None:
@@ -354,6 +359,7 @@ def scene_add_mesh(
         n_vertices=n,
         n_triangles=m,
         positions=pointer(positions),
+        positions_start=pointer(positions_start),
         positions_end=pointer(positions_end),
         triangles=pointer(triangles, IntPointer),
         corner_normals=pointer(corner_normals),
@@ -373,6 +379,7 @@ def scene_add_instances(
     transforms: Any,
     materials: Any = (),
     *,
+    transforms_start: Any = None,
     transforms_end: Any = None,
     visibility: int = 63,
     object_info: Any = None,
@@ -383,8 +390,10 @@ def scene_add_instances(
 
     Parameters
     ----------
-    transforms, transforms_end : array_like
-        (count, 3, 4), (count, 4, 4) or (count, 12): object to world at shutter open and close.
+    transforms : array_like
+        (count, 3, 4), (count, 4, 4) or (count, 12): object to world; with motion, in the middle of the shutter.
+    transforms_start, transforms_end : array_like, optional
+        The same at shutter open and close: both or neither. Turn, place and scale go from key to key each by themselves.
     materials : array_like
         Material number of each slot; -1 is the default grey.
     visibility : Ray
@@ -398,6 +407,8 @@ def scene_add_instances(
     """
     transforms = as_transforms("transforms", transforms)
     count = len(transforms)
+    if transforms_start is not None:
+        transforms_start = as_transforms("transforms_start", transforms_start, count)
     if transforms_end is not None:
         transforms_end = as_transforms("transforms_end", transforms_end, count)
     materials = as_array("materials", np.asarray(materials, dtype=np.int32), np.int32, (None,))
@@ -407,6 +418,7 @@ def scene_add_instances(
         mesh=mesh,
         count=count,
         transforms=pointer(transforms),
+        transforms_start=pointer(transforms_start),
         transforms_end=pointer(transforms_end),
         materials=pointer(materials, IntPointer),
         n_materials=len(materials),
@@ -418,12 +430,18 @@ def scene_add_instances(
     return checked(library().opal_scene_add_instances(scene, byref(struct)))
 
 
-def scene_set_transforms(scene: int, first_instance: int, transforms: Any, transforms_end: Any = None) -> None:
+def scene_set_transforms(
+    scene: int, first_instance: int, transforms: Any, transforms_start: Any = None, transforms_end: Any = None
+) -> None:
     """Moves instances; shapes as in `scene_add_instances`."""
     transforms = as_transforms("transforms", transforms)
+    count = len(transforms)
+    if transforms_start is not None:
+        transforms_start = as_transforms("transforms_start", transforms_start, count)
     if transforms_end is not None:
-        transforms_end = as_transforms("transforms_end", transforms_end, len(transforms))
-    checked(library().opal_scene_set_transforms(scene, first_instance, len(transforms), pointer(transforms), pointer(transforms_end)))
+        transforms_end = as_transforms("transforms_end", transforms_end, count)
+    keys = map(pointer, (transforms, transforms_start, transforms_end))
+    checked(library().opal_scene_set_transforms(scene, first_instance, count, *keys))
 
 
 def scene_add_light(scene: int, light: Any) -> int:
@@ -448,13 +466,15 @@ def scene_set_world(scene: int, world: Any) -> None:
 
 
 def scene_set_camera(scene: int, camera: Any) -> None:
-    """Sets a `descriptions.Camera`; without ``transform_end`` it stands still."""
-    struct = fill(CameraStruct(), camera, skip=("transform_end",))
-    end = get(camera, "transform_end")
-    if end is None:
-        struct.transform_end = struct.transform
-    else:
-        struct.transform_end = (c_float * 12)(*as_transforms("camera.transform_end", np.asarray(end)[None, :3], 1)[0])
+    """Sets a `descriptions.Camera`; at an end of the shutter that it does not give it stands as in the middle."""
+    ends = ("transform_start", "transform_end")
+    struct = fill(CameraStruct(), camera, skip=ends)
+    for name in ends:
+        end = get(camera, name)
+        if end is None:
+            setattr(struct, name, struct.transform)
+        else:
+            setattr(struct, name, (c_float * 12)(*as_transforms(f"camera.{name}", np.asarray(end)[None, :3], 1)[0]))
     checked(library().opal_scene_set_camera(scene, byref(struct)))
 
 

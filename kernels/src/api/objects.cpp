@@ -9,13 +9,22 @@ namespace {
 
 using namespace opal;
 
-void set_transform(Instance &instance, const float *begin, const float *end) {
-  instance.to_world = transform_from(begin);
+// start, end: both or neither. What is flat at any of its keys has no turn to interpolate and stands still.
+void set_transform(Instance &instance, const float *middle, const float *start, const float *end) {
+  instance.to_world = transform_from(middle);
   instance.to_object = inverse(instance.to_world);
-  instance.moving = end && std::memcmp(begin, end, 12 * sizeof(float)) != 0;
-  instance.to_world_end = instance.moving ? transform_from(end) : instance.to_world;
   instance.mirrored = instance.to_world.determinant() < 0;
+  instance.motion.reset();
+  const auto same = [&](const float *key) { return std::memcmp(key, middle, 12 * sizeof(float)) == 0; };
+  if (!start || (same(start) && same(end))) return;
+  const Transform open = transform_from(start), close = transform_from(end);
+  if (open.determinant() == 0 || close.determinant() == 0 || instance.to_world.determinant() == 0) return;
+  instance.motion = std::make_shared<const Motion>(open, instance.to_world, close);
 }
+
+// The values of element i, of `width` floats each, or NULL.
+const float *element(const float *values, size_t i, size_t width = 12) { return values ? values + width * i : nullptr; }
+bool finite_or_none(const float *values, size_t count) { return !values || all_finite(values, count); }
 
 }  // namespace
 
@@ -26,6 +35,7 @@ int32_t opal_scene_add_mesh(opal_scene *scene, const opal_mesh_desc *desc, int32
     require(scene && desc && desc->n_vertices >= 0 && desc->n_triangles >= 0, "No mesh");
     require(desc->n_triangles == 0 || (desc->positions && desc->triangles),
             "A mesh with triangles needs positions and corners");
+    require(!desc->positions_start == !desc->positions_end, "A mesh that moves needs positions at both ends of the shutter");
     auto mesh = std::make_unique<Mesh>();
     const size_t nv = size_t(desc->n_vertices), nt = size_t(desc->n_triangles);
     for (size_t i = 0; i < nt * 3; ++i)
@@ -34,8 +44,8 @@ int32_t opal_scene_add_mesh(opal_scene *scene, const opal_mesh_desc *desc, int32
 
     std::vector<uint8_t> finite(nv, 1);
     for (size_t i = 0; i < nv; ++i)
-      finite[i] =
-          all_finite(desc->positions + 3 * i, 3) && (!desc->positions_end || all_finite(desc->positions_end + 3 * i, 3));
+      finite[i] = all_finite(desc->positions + 3 * i, 3) && finite_or_none(element(desc->positions_start, i, 3), 3) &&
+                  finite_or_none(element(desc->positions_end, i, 3), 3);
     std::vector<int32_t> kept;  // triangles whose corners are finite
     kept.reserve(nt);
     for (size_t t = 0; t < nt; ++t) {
@@ -64,6 +74,7 @@ int32_t opal_scene_add_mesh(opal_scene *scene, const opal_mesh_desc *desc, int32
       return out;
     };
     mesh->positions = vertices(desc->positions);
+    mesh->positions_start = vertices(desc->positions_start);
     mesh->positions_end = vertices(desc->positions_end);
     mesh->triangles = pick(desc->triangles, 3);
     mesh->corner_normals = pick(desc->corner_normals, 9);
@@ -85,7 +96,7 @@ int32_t opal_scene_add_mesh(opal_scene *scene, const opal_mesh_desc *desc, int32
     }
     for (const int32_t c : mesh->triangles) {
       mesh->bounds.extend(mesh->vertex(c));
-      if (!mesh->positions_end.empty()) mesh->bounds.extend(mesh->vertex(c, 1));
+      if (mesh->moving()) mesh->bounds.extend(mesh->vertex(c, 0)), mesh->bounds.extend(mesh->vertex(c, 1));
     }
     scene->meshes.push_back(std::move(mesh));
     scene->geometry_dirty = true;
@@ -98,8 +109,11 @@ int32_t opal_scene_add_instances(opal_scene *scene, const opal_instances_desc *d
     require(scene && desc && desc->count >= 0 && (desc->transforms || desc->count == 0), "No transforms");
     require(desc->mesh >= 0 && size_t(desc->mesh) < scene->meshes.size(), "Instances name a mesh that does not exist");
     const size_t n = size_t(desc->count);
-    require(all_finite(desc->transforms, n * 12) && (!desc->transforms_end || all_finite(desc->transforms_end, n * 12)),
+    require(all_finite(desc->transforms, n * 12) && finite_or_none(desc->transforms_start, n * 12) &&
+                finite_or_none(desc->transforms_end, n * 12),
             "A transform is not finite");
+    require(!desc->transforms_start == !desc->transforms_end,
+            "Instances that move need transforms at both ends of the shutter");
     InstanceGroup group;
     group.materials = copy(desc->materials, desc->materials ? size_t(desc->n_materials) : 0);
     for (const int32_t m : group.materials)
@@ -114,27 +128,30 @@ int32_t opal_scene_add_instances(opal_scene *scene, const opal_instances_desc *d
       Instance instance;
       instance.mesh = uint32_t(desc->mesh);
       instance.group = uint32_t(scene->groups.size() - 1);
-      set_transform(instance, desc->transforms + 12 * i, desc->transforms_end ? desc->transforms_end + 12 * i : nullptr);
+      set_transform(instance, desc->transforms + 12 * i, element(desc->transforms_start, i), element(desc->transforms_end, i));
       if (desc->object_info) {
         const float *info = desc->object_info + 8 * i;
         instance.random = info[0], instance.object_index = info[1];
         std::copy(info + 2, info + 6, instance.color);
       }
-      scene->instances.push_back(instance);
+      scene->instances.push_back(std::move(instance));
     }
     scene->instances_dirty = true;
     return first;
   });
 }
 
-int32_t opal_scene_set_transforms(opal_scene *scene, int32_t first, int32_t count, const float *begin, const float *end) {
+int32_t opal_scene_set_transforms(opal_scene *scene, int32_t first, int32_t count, const float *middle, const float *start,
+                                  const float *end) {
   return guarded([&] {
-    require(scene && begin && first >= 0 && count >= 0 && size_t(first) + size_t(count) <= scene->instances.size(),
+    require(scene && middle && first >= 0 && count >= 0 && size_t(first) + size_t(count) <= scene->instances.size(),
             "No such instances");
-    require(all_finite(begin, size_t(count) * 12) && (!end || all_finite(end, size_t(count) * 12)),
+    const size_t n = size_t(count);
+    require(all_finite(middle, n * 12) && finite_or_none(start, n * 12) && finite_or_none(end, n * 12),
             "A transform is not finite");
-    for (int32_t i = 0; i < count; ++i)
-      set_transform(scene->instances[size_t(first + i)], begin + 12 * i, end ? end + 12 * i : nullptr);
+    require(!start == !end, "Instances that move need transforms at both ends of the shutter");
+    for (size_t i = 0; i < n; ++i)
+      set_transform(scene->instances[size_t(first) + i], middle + 12 * i, element(start, i), element(end, i));
     scene->instances_dirty = true;
     return 0;
   });
@@ -163,7 +180,7 @@ int32_t opal_scene_evaluate(const opal_scene *scene, const opal_program *desc, c
     }
     Instance instance;
     const Transform identity;
-    set_transform(instance, places->transform ? places->transform : identity.m, nullptr);
+    set_transform(instance, places->transform ? places->transform : identity.m, nullptr, nullptr);
     if (places->object_info) {
       instance.random = places->object_info[0], instance.object_index = places->object_info[1];
       std::copy(places->object_info + 2, places->object_info + 6, instance.color);

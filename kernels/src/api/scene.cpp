@@ -181,9 +181,9 @@ int32_t opal_scene_set_world(opal_scene *scene, const opal_world_desc *desc) {
 
 int32_t opal_scene_set_camera(opal_scene *scene, const opal_camera_desc *desc) {
   return guarded([&] {
-    require(
-        scene && desc && all_finite(desc->transform, 12) && all_finite(desc->transform_end, 12) && all_finite(desc->window, 4),
-        "The camera has a value that is not finite");
+    require(scene && desc && all_finite(desc->transform, 12) && all_finite(desc->transform_start, 12) &&
+                all_finite(desc->transform_end, 12) && all_finite(desc->window, 4),
+            "The camera has a value that is not finite");
     require(desc->window[1] > desc->window[0] && desc->window[3] > desc->window[2], "The camera's window is empty");
     scene->camera = *desc;
     scene->has_camera = true;

@@ -2,6 +2,8 @@
 // Thin-lens camera, perspective and orthographic. Conventions in camera.h.
 #include "camera/camera.h"
 
+#include "core/motion.h"
+
 #include <cstring>
 
 namespace opal {
@@ -47,13 +49,9 @@ Vec2 sample_aperture(const opal_camera_desc &camera, Vec2 u) {
 }
 
 Transform camera_transform(const opal_camera_desc &camera, float time) {
-  const Transform open = from_array(camera.transform);
-  if (time == 0 || std::memcmp(camera.transform, camera.transform_end, sizeof camera.transform) == 0) return open;
-  // Linear in position; the axes turn along the chord and stay perpendicular.
-  const Transform t = lerp(open, from_array(camera.transform_end), time);
-  const Frame f = Frame::from_zx(safe_normalize(t.axis(2), open.axis(2)), t.axis(0));
-  const Vec3 o = t.origin();
-  return {{f.x.x, f.y.x, f.z.x, o.x, f.x.y, f.y.y, f.z.y, o.y, f.x.z, f.y.z, f.z.z, o.z}};
+  const auto same = [&](const float (&m)[12]) { return std::memcmp(camera.transform, m, sizeof m) == 0; };
+  if (same(camera.transform_start) && same(camera.transform_end)) return from_array(camera.transform);
+  return Motion(from_array(camera.transform_start), from_array(camera.transform), from_array(camera.transform_end)).at(time);
 }
 
 bool generate_ray(const opal_camera_desc &camera, float x, float y, Vec2 lens, float time, Ray &ray) {

@@ -154,7 +154,7 @@ void CameraPath::add_met(const SourceId &source, const Spectrum &radiance, const
   Spectrum pdf = path_pdf_, share(1.0f);
   if (last_.light_was_sampled && source.kind != SourceKind::None) {
     const float p = light_pdf(scene_, source, last_.p, last_.normal, last_.transmissive, last_.light_group, ray_.direction,
-                              distance, normal, point);
+                              distance, normal, point, ray_.time);
     if (p > 0) pdf += previous_pdf_ * (p / last_.pdf);
     if (last_.elsewhere > 0) share = last_.share(last_.phase, p);
   }

@@ -264,8 +264,8 @@ bool sample_emission(const Scene &scene, const std::vector<EmissionTarget> &targ
       break;
     }
     case SourceKind::Triangle:
-      emitted = emit_triangle(scene, scene.emissive[out.source.index], table.targets, pick, position, direction, time, w, e,
-                              spectrum);
+      emitted = emit_triangle(scene, scene.emissive_at(out.source.index, time), table.targets, pick, position, direction, time,
+                              w, e, spectrum);
       break;
     case SourceKind::World:
       emitted = emit_world(scene, lights.world, table.targets, pick, position, direction, w, e, spectrum);

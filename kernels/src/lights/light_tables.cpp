@@ -39,9 +39,22 @@ LightBounds bounds_of(const LampModel &lamp) {
   return b;
 }
 
-LightBounds bounds_of(const EmissiveTriangle &t) {
+LightBounds bounds_of(const Scene &scene, const EmissiveTriangle &t) {
   LightBounds b;
   b.box.extend(t.p0), b.box.extend(t.p1), b.box.extend(t.p2);
+  const Instance &instance = scene.instances[t.instance];
+  const Mesh &mesh = *scene.meshes[instance.mesh];
+  if (instance.motion || mesh.moving()) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const int v = mesh.triangles[size_t(t.triangle) * 3 + size_t(corner)];
+      for (int key = 0; key < Motion::kKeys; ++key) {
+        const Vec3 local = mesh.vertex(v, Motion::time_of(key));
+        if (instance.motion) b.box.extend(instance.motion->path(local));
+        else b.box.extend(instance.to_world.point(local));
+      }
+    }
+    b.theta_o = kPi;  // it may turn to any side
+  }
   b.axis = safe_normalize(cross(t.p1 - t.p0, t.p2 - t.p0), {0, 0, 1});
   b.theta_e = 0.5f * kPi;
   b.two_sided = true;
@@ -56,7 +69,7 @@ std::vector<LightTables::Glow> glows_of(const Scene &scene) {
   for (size_t first = 0, last = 0; first < scene.emissive.size(); first = last) {
     LightBounds all;
     for (; last < scene.emissive.size() && scene.emissive[last].instance == scene.emissive[first].instance; ++last) {
-      const LightBounds one = bounds_of(scene.emissive[last]);
+      const LightBounds one = bounds_of(scene, scene.emissive[last]);
       all.box.extend(one.box.low), all.box.extend(one.box.high);
       all.power += one.power;
     }
@@ -135,7 +148,7 @@ std::shared_ptr<LightTables> build_light_tables(const Scene &scene) {
   }
   scene.stop_if_cancelled();
   for (uint32_t i = 0; i < scene.emissive.size(); ++i)
-    t.near_of_triangle[i] = add_near({SourceKind::Triangle, i}, bounds_of(scene.emissive[i]));
+    t.near_of_triangle[i] = add_near({SourceKind::Triangle, i}, bounds_of(scene, scene.emissive[i]));
   scene.stop_if_cancelled();
   t.glows = glows_of(scene);
   scene.stop_if_cancelled();

@@ -42,7 +42,8 @@ bool sample_light(const Scene &scene, const Vec3 &p, const Vec3 &normal, bool tr
                   Vec2 u, const Wavelengths &w, float time, LightSample &out);
 // The pdf with which sample_light would have produced the hit below, seen from p.
 float light_pdf(const Scene &scene, const SourceId &source, const Vec3 &p, const Vec3 &normal, bool transmissive,
-                int32_t light_group, const Vec3 &wi, float distance, const Vec3 &light_normal, const Vec3 &light_point);
+                int32_t light_group, const Vec3 &wi, float distance, const Vec3 &light_normal, const Vec3 &light_point,
+                float time);
 // Whether a source lights what belongs to a receiver set (light linking).
 bool lights_receiver(const Scene &scene, const SourceId &source, int32_t light_group);
 

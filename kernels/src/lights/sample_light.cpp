@@ -122,7 +122,7 @@ float source_probability(const LightTables &t, const Receiver &r, const SourceId
 
 bool sample_triangle_light(const Scene &scene, uint32_t index, const Vec3 &p, Vec2 u, const Wavelengths &w, float time,
                            LightSample &out) {
-  const EmissiveTriangle &e = scene.emissive[index];
+  const EmissiveTriangle e = scene.emissive_at(index, time);
   TriangleSample s;
   if (!sample_triangle(e.p0, e.p1, e.p2, e.area, p, u, s)) return false;
   const Vec3 rgb = triangle_emission(scene, e, p, s.wi, s.distance, s.b1, s.b2, time);
@@ -173,7 +173,7 @@ bool sample_light(const Scene &scene, const Vec3 &p, const Vec3 &normal, bool tr
 }
 
 float light_pdf(const Scene &scene, const SourceId &source, const Vec3 &p, const Vec3 &normal, bool transmissive,
-                int32_t light_group, const Vec3 &wi, float distance, const Vec3 &, const Vec3 &) {
+                int32_t light_group, const Vec3 &wi, float distance, const Vec3 &, const Vec3 &, float time) {
   if (!scene.lights) return 0;
   const LightTables &t = *scene.lights;
   float pdf = 0;
@@ -186,7 +186,7 @@ float light_pdf(const Scene &scene, const SourceId &source, const Vec3 &p, const
     }
     case SourceKind::Triangle: {
       if (source.index >= scene.emissive.size()) return 0;
-      const EmissiveTriangle &e = scene.emissive[source.index];
+      const EmissiveTriangle e = scene.emissive_at(source.index, time);
       pdf = triangle_pdf(e.p0, e.p1, e.p2, e.area, p, wi, distance);
       break;
     }

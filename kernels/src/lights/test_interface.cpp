@@ -71,7 +71,7 @@ int32_t opal_test_light_pdf(const opal_scene *scene, const opal_test_receiver *r
   for (int64_t i = 0; i < n; ++i) {
     const SourceId id{source[2 * i] < 0 ? SourceKind::None : SourceKind(source[2 * i]), uint32_t(source[2 * i + 1])};
     pdf[i] = light_pdf(*scene, id, load(r->position), load(r->normal), r->transmissive, r->light_group, load(direction + 3 * i),
-                       distance[i], {}, {});
+                       distance[i], {}, {}, 0);
   }
   return OPAL_OK;
 }

@@ -40,11 +40,16 @@ void build_mesh(const Scene &scene, Mesh &mesh) {
   if (mesh.n_triangles() > 0) {
     RTCGeometry geometry = embree.new_geometry(device, kRtcGeometryTriangle);
     const size_t n_vertices = mesh.positions.size() / 3;
-    const bool moving = !mesh.positions_end.empty();
-    if (moving) embree.set_time_steps(geometry, 2);
-    embree.set_shared_buffer(geometry, kRtcBufferVertex, 0, kRtcFormatFloat3, mesh.positions.data(), 0, 12, n_vertices);
-    if (moving)
-      embree.set_shared_buffer(geometry, kRtcBufferVertex, 1, kRtcFormatFloat3, mesh.positions_end.data(), 0, 12, n_vertices);
+    unsigned step = 0;
+    const auto add_vertices = [&](const std::vector<float> &positions) {
+      embree.set_shared_buffer(geometry, kRtcBufferVertex, step++, kRtcFormatFloat3, positions.data(), 0, 12, n_vertices);
+    };
+    if (mesh.moving()) {
+      embree.set_time_steps(geometry, Motion::kKeys);
+      for (const auto *positions : {&mesh.positions_start, &mesh.positions, &mesh.positions_end}) add_vertices(*positions);
+    } else {
+      add_vertices(mesh.positions);
+    }
     embree.set_shared_buffer(geometry, kRtcBufferIndex, 0, kRtcFormatUint3, mesh.triangles.data(), 0, 12,
                              size_t(mesh.n_triangles()));
     embree.set_mask(geometry, ~0u);
@@ -55,6 +60,12 @@ void build_mesh(const Scene &scene, Mesh &mesh) {
   commit_embree(scene, mesh.embree, "building a mesh");
   mesh.touches_itself.reset();
   mesh.dirty = false;
+}
+
+RTCQuaternionDecomposition for_embree(const DecomposedTransform &d) {
+  const auto &[rotation, translation, scale, skew] = d;
+  return {scale.x,    scale.y,    scale.z,    skew.x,        skew.y,        skew.z,       0, 0, 0, rotation.r,
+          rotation.i, rotation.j, rotation.k, translation.x, translation.y, translation.z};
 }
 
 void build_top(Scene &scene) {
@@ -70,10 +81,12 @@ void build_top(Scene &scene) {
     if (mesh.n_triangles() == 0 || instance.to_world.determinant() == 0) continue;
     RTCGeometry geometry = embree.new_geometry(scene.device, kRtcGeometryInstance);
     embree.set_instanced_scene(geometry, mesh.embree);
-    if (instance.moving) {
-      embree.set_time_steps(geometry, 2);
-      embree.set_transform(geometry, 0, kRtcFormatFloat3x4RowMajor, instance.to_world.m);
-      embree.set_transform(geometry, 1, kRtcFormatFloat3x4RowMajor, instance.to_world_end.m);
+    if (instance.motion) {
+      embree.set_time_steps(geometry, Motion::kKeys);
+      for (unsigned step = 0; step < Motion::kKeys; ++step) {
+        const RTCQuaternionDecomposition key = for_embree(instance.motion->keys[step]);
+        embree.set_transform_quaternion(geometry, step, &key);
+      }
     } else {
       embree.set_transform(geometry, 0, kRtcFormatFloat3x4RowMajor, instance.to_world.m);
     }
@@ -85,23 +98,28 @@ void build_top(Scene &scene) {
   commit_embree(scene, scene.top, "building the scene");
 }
 
-// The sphere round an instance: about the centre of its bounds, as small as the eight corners of its own box allow.
+// The sphere round an instance: about the centre of its bounds, or of what that centre passes, and as small as its vertices
+// allow, whose distance from that centre no turn changes and is largest at a key.
 EmissionTarget bounding_sphere(const Mesh &mesh, const Instance &instance) {
   const Vec3 centre_local = mesh.bounds.centre();
   EmissionTarget s;
-  const Vec3 c0 = instance.to_world.point(centre_local);
-  s.centre = instance.moving ? lerp(c0, instance.to_world_end.point(centre_local), 0.5f) : c0;
   const size_t n = mesh.positions.size() / 3;
   const auto grow = [&](const Transform &m, const std::vector<float> &positions) {
     float r2 = 0;
-    for (size_t i = 0; i < n; ++i)
-      r2 = std::max(r2, length_squared(m.point({positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]}) - s.centre));
+    for (size_t i = 0; i < positions.size() / 3; ++i)
+      r2 = std::max(
+          r2, length_squared(m.vector(Vec3{positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]} - centre_local)));
     s.radius = std::max(s.radius, std::sqrt(r2));
   };
+  const Bounds passed = instance.motion ? instance.motion->path(centre_local) : Bounds{};
+  s.centre = instance.motion ? passed.centre() : instance.to_world.point(centre_local);
   if (n <= 100000) {
-    grow(instance.to_world, mesh.positions);
-    if (instance.moving) grow(instance.to_world_end, mesh.positions);
-    if (!mesh.positions_end.empty()) grow(instance.to_world, mesh.positions_end);
+    for (const auto *positions : {&mesh.positions_start, &mesh.positions, &mesh.positions_end}) {
+      if (!instance.motion) grow(instance.to_world, *positions);
+      else
+        for (int key = 0; key < Motion::kKeys; ++key) grow(instance.motion->at(Motion::time_of(key)), *positions);
+    }
+    s.radius += passed.radius();
   } else {
     s.radius = world_bounds(mesh.bounds, instance).radius() + length(s.centre - world_bounds(mesh.bounds, instance).centre());
   }
@@ -262,9 +280,10 @@ void Scene::set_wavelengths(float first, float last) {
 
 int64_t Scene::memory_bytes() const {
   size_t bytes = instances.size() * sizeof(Instance) + emissive.size() * sizeof(EmissiveTriangle);
+  for (const Instance &instance : instances) bytes += instance.motion ? sizeof(Motion) : 0;
   for (const auto &mesh : meshes) {
-    bytes += (mesh->positions.size() + mesh->positions_end.size() + mesh->corner_normals.size() + mesh->corner_tangents.size() +
-              mesh->generated.size()) *
+    bytes += (mesh->positions.size() + mesh->positions_start.size() + mesh->positions_end.size() + mesh->corner_normals.size() +
+              mesh->corner_tangents.size() + mesh->generated.size()) *
              sizeof(float);
     bytes += (mesh->triangles.size() + mesh->material_slots.size()) * sizeof(int32_t);
     for (const Attribute &a : mesh->attributes) bytes += a.values.size() * sizeof(float);

@@ -63,6 +63,7 @@ void EmbreeApi::open(const char *path) {
   bind(set_shared_buffer, library, "rtcSetSharedGeometryBuffer");
   bind(set_instanced_scene, library, "rtcSetGeometryInstancedScene");
   bind(set_transform, library, "rtcSetGeometryTransform");
+  bind(set_transform_quaternion, library, "rtcSetGeometryTransformQuaternion");
   bind(intersect1, library, "rtcIntersect1");
   bind(occluded1, library, "rtcOccluded1");
 }

@@ -75,6 +75,15 @@ struct RTCIntersectArguments {
 };
 enum : int { kRtcInvokeArgumentFilter = 2 };
 
+// A transform as Embree interpolates it where it turns (core/motion.h).
+struct alignas(16) RTCQuaternionDecomposition {
+  float scale_x, scale_y, scale_z;
+  float skew_xy, skew_xz, skew_yz;
+  float shift_x, shift_y, shift_z;
+  float quaternion_r, quaternion_i, quaternion_j, quaternion_k;
+  float translation_x, translation_y, translation_z;
+};
+
 struct EmbreeApi {
   void *library = nullptr;
   RTCDevice (*new_device)(const char *config) = nullptr;
@@ -100,6 +109,7 @@ struct EmbreeApi {
                             size_t count) = nullptr;
   void (*set_instanced_scene)(RTCGeometry, RTCScene) = nullptr;
   void (*set_transform)(RTCGeometry, unsigned step, int format, const void *) = nullptr;
+  void (*set_transform_quaternion)(RTCGeometry, unsigned step, const RTCQuaternionDecomposition *) = nullptr;
   void (*intersect1)(RTCScene, RTCRayHit *, void *arguments) = nullptr;
   void (*occluded1)(RTCScene, RTCRay *, void *arguments) = nullptr;
   int version = 0;        // major * 10000 + minor * 100 + patch

@@ -6,6 +6,8 @@ namespace opal {
 namespace {
 
 constexpr float kEpsilon = 0x1p-24f;  // half a unit in the last place of 1
+// Embree interpolates a turn for itself. Its angle comes from an arc cosine, which loses up to five bits near 1.
+constexpr float kInterpolation = 64 * kEpsilon;
 constexpr float gamma(int n) { return float(n) * kEpsilon / (1 - float(n) * kEpsilon); }
 
 Vec3 absolute(const Vec3 &v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
@@ -30,17 +32,30 @@ struct ContactQuery {
 
 Vec3 Mesh::vertex(int i, float time) const {
   const Vec3 a = vertex(i);
-  if (positions_end.empty()) return a;
-  return lerp(a, corner(positions_end, size_t(i) * 3), time);
+  if (!moving()) return a;
+  return between(corner(positions_start, size_t(i) * 3), a, corner(positions_end, size_t(i) * 3), time);
 }
 
+// Everywhere that an instance comes. One that turns is a ball about its centre here, whose path alone is followed: of each
+// corner's that would take long for a hundred thousand copies.
 Bounds world_bounds(const Bounds &local, const Instance &instance) {
   Bounds b;
   if (local.empty()) return b;
+  const bool turns = instance.motion && instance.motion->turns();
+  const Vec3 centre = local.centre();
+  float r2 = 0;
   for (int i = 0; i < 8; ++i) {
     const Vec3 p{i & 1 ? local.high.x : local.low.x, i & 2 ? local.high.y : local.low.y, i & 4 ? local.high.z : local.low.z};
-    b.extend(instance.to_world.point(p));
-    if (instance.moving) b.extend(instance.to_world_end.point(p));
+    for (int key = 0; turns && key < Motion::kKeys; ++key)
+      r2 = std::max(r2, length_squared(instance.motion->at(Motion::time_of(key)).vector(p - centre)));
+    if (turns) continue;
+    if (instance.motion) b.extend(instance.motion->path(p));
+    else b.extend(instance.to_world.point(p));
+  }
+  if (turns) {
+    const float r = std::sqrt(r2);
+    b = instance.motion->path(centre);
+    b.low -= {r, r, r}, b.high += {r, r, r};
   }
   return b;
 }
@@ -99,9 +114,8 @@ ShadingPoint Scene::shading_point(const Ray &ray, const Hit &hit) const {
              c = mesh.vertex(corners[2], ray.time);
   const float w = 1 - hit.u - hit.v;
 
-  const bool moving = instance.moving;
-  const Transform to_world = moving ? lerp(instance.to_world, instance.to_world_end, ray.time) : instance.to_world;
-  const Transform to_object = moving ? inverse(to_world) : instance.to_object;
+  const Transform to_world = instance.to_world_at(ray.time);
+  const Transform to_object = instance.motion ? inverse(to_world) : instance.to_object;
 
   const Vec3 local = a * w + b * hit.u + c * hit.v;
   sp.p = to_world.point(local);
@@ -109,6 +123,7 @@ ShadingPoint Scene::shading_point(const Ray &ray, const Hit &hit) const {
   Transform magnitude = to_world;
   for (float &m : magnitude.m) m = std::abs(m);
   sp.error = magnitude.vector(local_error) * (1 + gamma(3)) + gamma(4) * magnitude.point(absolute(local));
+  if (instance.motion) sp.error += kInterpolation * magnitude.vector(absolute(local)) + gamma(4) * absolute(to_world.origin());
 
   Vec3 ng = to_object.transposed_vector(cross(b - a, c - a));
   ng = safe_normalize(ng, -ray.direction);
@@ -132,6 +147,20 @@ ShadingPoint Scene::shading_point(const Ray &ray, const Hit &hit) const {
   sp.ray_length = hit.t;
   sp.time = ray.time;
   return sp;
+}
+
+EmissiveTriangle Scene::emissive_at(uint32_t index, float time) const {
+  EmissiveTriangle e = emissive[index];
+  const Instance &instance = instances[e.instance];
+  const Mesh &mesh = *meshes[instance.mesh];
+  if (!instance.motion && !mesh.moving()) return e;
+  const int32_t *corners = &mesh.triangles[size_t(e.triangle) * 3];
+  const Transform to_world = instance.to_world_at(time);
+  e.p0 = to_world.point(mesh.vertex(corners[0], time));
+  e.p1 = to_world.point(mesh.vertex(corners[1], time));
+  e.p2 = to_world.point(mesh.vertex(corners[2], time));
+  e.area = 0.5f * length(cross(e.p1 - e.p0, e.p2 - e.p0));
+  return e;
 }
 
 Vec3 offset_origin(const ShadingPoint &sp, const Vec3 &direction) {

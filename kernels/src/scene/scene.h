@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/colour.h"
+#include "core/motion.h"
 #include "core/vec.h"
 #include "lights/lights.h"
 #include "media/medium.h"
@@ -38,14 +39,15 @@ struct Attribute {
 
 struct Mesh {
   std::vector<float> positions;         // 3 a vertex (+1 float of padding at the end, for Embree)
-  std::vector<float> positions_end;     // empty without motion
+  std::vector<float> positions_start;   // where the shutter opens (`positions`: its middle); empty without motion
+  std::vector<float> positions_end;     // where it closes; empty without motion
   std::vector<int32_t> triangles;       // 3 a triangle
   std::vector<float> corner_normals;    // 9 a triangle, or empty: flat
   std::vector<float> corner_tangents;   // 12 a triangle, or empty
   std::vector<int32_t> material_slots;  // 1 a triangle, or empty: 0
   std::vector<float> generated;         // 3 a vertex, or empty
   std::vector<Attribute> attributes;
-  Bounds bounds;              // object space, both ends of the motion
+  Bounds bounds;              // object space, all of the motion
   RTCScene embree = nullptr;  // one-triangle-mesh scene, instanced
   bool dirty = true;
   std::optional<bool> touches_itself;  // scene/touching.h; not known until asked
@@ -53,17 +55,21 @@ struct Mesh {
   int n_triangles() const { return int(triangles.size() / 3); }
   Vec3 vertex(int i) const { return {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]}; }
   Vec3 vertex(int i, float time) const;
+  bool moving() const { return !positions_end.empty(); }
 };
 
 struct Instance {
   uint32_t mesh = 0;
-  Transform to_world, to_object, to_world_end;
-  bool moving = false, mirrored = false;  // mirrored: negative determinant
-  bool touching = false;                  // its faces may coincide with those of a gem or a medium (scene/touching.h)
-  uint32_t order = 0;                     // by falling size of the bounds: the smallest comes last
-  uint32_t group = 0;                     // index into Scene::groups
+  Transform to_world, to_object;         // in the middle of the shutter
+  std::shared_ptr<const Motion> motion;  // null: it stands still
+  bool mirrored = false;                 // negative determinant
+  bool touching = false;                 // its faces may coincide with those of a gem or a medium (scene/touching.h)
+  uint32_t order = 0;                    // by falling size of the bounds: the smallest comes last
+  uint32_t group = 0;                    // index into Scene::groups
   float random = 0, object_index = 0;
   float color[4] = {1, 1, 1, 1};
+
+  Transform to_world_at(float time) const { return motion ? motion->at(time) : to_world; }
 };
 
 // What instances of one call share.
@@ -85,7 +91,7 @@ struct Material {
 
 struct EmissiveTriangle {
   uint32_t instance = 0, triangle = 0, material = 0;
-  Vec3 p0, p1, p2;  // world space
+  Vec3 p0, p1, p2;  // world space, in the middle of the shutter
   float area = 0;
   Vec3 emission;  // estimate, for importance
 };
@@ -155,6 +161,8 @@ struct Scene {
   uint32_t material_index(uint32_t instance, uint32_t triangle) const;
   // Fills everything but ray_kind and depth.
   ShadingPoint shading_point(const Ray &ray, const Hit &hit) const;
+  // `emissive[index]` as it lies then.
+  EmissiveTriangle emissive_at(uint32_t index, float time) const;
   // Index into `emissive` or -1.
   int find_emissive(uint32_t instance, uint32_t triangle) const;
   int64_t memory_bytes() const;

@@ -30,7 +30,7 @@ bool overlap(const Bounds &a, const Bounds &b, float slack) {
 
 // The bounds of each face in the world; of a moving or a fine mesh, of the whole.
 std::vector<Bounds> face_bounds(const Mesh &mesh, const Instance &instance, const Bounds &whole) {
-  if (instance.moving || !mesh.positions_end.empty() || mesh.n_triangles() > kMostFaces) return {whole};
+  if (instance.motion || mesh.moving() || mesh.n_triangles() > kMostFaces) return {whole};
   std::vector<Bounds> faces(size_t(mesh.n_triangles()));
   for (size_t i = 0; i < faces.size(); ++i)
     for (size_t k = 0; k < 3; ++k) faces[i].extend(instance.to_world.point(mesh.vertex(mesh.triangles[3 * i + k])));

@@ -79,8 +79,8 @@ bool uv_tangent(const ShadingPoint &sp, int uv, const Vec3 &normal, Vec3 &tangen
 
 PointTransforms point_transforms(const ShadingPoint &sp) {
   if (!sp.instance) return {};
-  if (!sp.instance->moving) return {sp.instance->to_world, sp.instance->to_object};
-  const Transform t = lerp(sp.instance->to_world, sp.instance->to_world_end, sp.time);
+  if (!sp.instance->motion) return {sp.instance->to_world, sp.instance->to_object};
+  const Transform t = sp.instance->motion->at(sp.time);
   return {t, inverse(t)};
 }
 
