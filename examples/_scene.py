@@ -232,11 +232,14 @@ def medium(name: str, extinction: float, albedo: Sequence[float] = (1.0, 1.0, 1.
     return material
 
 
-def limit(scene: bpy.types.Scene, passes: int, photons: int, seconds: float = 160.0) -> None:
-    """Passes and photons a pass of Opal, denoised, and the time after which the render ends at the latest; nothing without the engine."""
+def limit(scene: bpy.types.Scene, passes: int, photons: int, seconds: float = 160.0, **settings: object) -> None:
+    """Passes and photons a pass of Opal, denoised, the time after which the render ends at the latest, and other settings of
+    `scene.opal`; nothing without the engine."""
     if hasattr(scene, "opal"):
         scene.opal.passes, scene.opal.photons_per_pass, scene.opal.time_limit = passes, photons, seconds
         scene.opal.denoise = True
+        for key, value in settings.items():
+            setattr(scene.opal, key, value)
 
 
 def _with_nodes(name: str) -> bpy.types.Material:

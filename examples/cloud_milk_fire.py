@@ -50,7 +50,8 @@ def build() -> bpy.types.Scene:
     _scene.lamp("Sun", "SUN", (-1.0, 0.6, 1.2), (0.0, 0.0, 0.0), 3.0, angle=0.02)
     _scene.plain_world((0.35, 0.5, 0.8), 0.35)
     _scene.camera((0.0, -0.95, 0.34), (0.0, 0.0, 0.085), 42.0)
-    _scene.limit(scene, 24, 0)
+    scene.render.resolution_x, scene.render.resolution_y = 640, 360
+    _scene.limit(scene, 18, 0)
     return scene
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Denoising by the Open Image Denoise 2 that Blender's build carries, through its C interface.
 
-The filter is "RT": a network for path-traced pictures, guided by albedo and normal. Functions and constants after
+The filter is "RT": a network for path-traced pictures, guided by albedo and normal, which it cleans first. Functions and constants after
 https://www.openimagedenoise.org/documentation.html (version 2).
 """
 
@@ -105,21 +105,29 @@ def denoise(
         raise OpalError(reason)
     color = as_array("color", color, np.float32, (None, None, None))
     height, width, _ = color.shape
-    images = {
-        b"color": np.ascontiguousarray(color[..., :3]),
-        b"albedo": as_array("albedo", albedo, np.float32, (height, width, 3)),
-        b"normal": as_array("normal", normal, np.float32, (height, width, 3)),
-        b"output": np.empty((height, width, 3), np.float32),
+    stop = wants_stop or (lambda: False)
+
+    def clean(**images: np.ndarray) -> np.ndarray:
+        output = np.empty((height, width, 3), np.float32)
+        _run({**{name.encode(): image for name, image in images.items()}, b"output": output}, threads, stop)
+        return output
+
+    # In media a guide has the very noise of the picture, of the same paths: some meet the wall, some the fog. Taken as it is, that noise
+    # would pass for a pattern of the wall's and stay.
+    guides = {
+        "albedo": clean(albedo=as_array("albedo", albedo, np.float32, (height, width, 3))),
+        "normal": clean(normal=as_array("normal", normal, np.float32, (height, width, 3))),
     }
     out = color.copy()
-    _run(images, width, height, threads, wants_stop or (lambda: False))
-    out[..., :3] = images[b"output"]
+    out[..., :3] = clean(color=np.ascontiguousarray(color[..., :3]), **guides)
     return out
 
 
-def _run(images: dict[bytes, np.ndarray], width: int, height: int, threads: int, wants_stop: Callable[[], bool]) -> None:
+def _run(images: dict[bytes, np.ndarray], threads: int, wants_stop: Callable[[], bool]) -> None:
+    """One filter: of the colour by clean guides, or of a guide alone."""
     api = _library
     assert api is not None
+    height, width, _ = images[b"output"].shape
     monitor = _Monitor(lambda _user, _done: not wants_stop())
     device = api.oidnNewDevice(_DEVICE_CPU)
     if not device:
@@ -132,7 +140,9 @@ def _run(images: dict[bytes, np.ndarray], width: int, height: int, threads: int,
         if filter_handle:
             for name, pixels in images.items():
                 api.oidnSetSharedFilterImage(filter_handle, name, pixels.ctypes.data, _FORMAT_FLOAT3, width, height, 0, 0, 0)
-            api.oidnSetFilterBool(filter_handle, b"hdr", True)
+            if b"color" in images:
+                api.oidnSetFilterBool(filter_handle, b"hdr", True)
+                api.oidnSetFilterBool(filter_handle, b"cleanAux", True)
             api.oidnSetFilterProgressMonitorFunction(filter_handle, monitor, None)
             api.oidnCommitFilter(filter_handle)
             api.oidnExecuteFilter(filter_handle)

@@ -46,7 +46,7 @@ def copies_bytes(pixels: int, spectral_bins: int = 0, denoised: bool = False) ->
         Whether the picture is denoised.
     """
     picture = 4
-    denoising = 2 * 4 + 4 * 3  # the picture and the clean one; colour, its guides and what comes out
+    denoising = 2 * 4 + 6 * 3  # the picture and the clean one; colour, its guides, those cleaned, and what comes out
     spectrum = 4 + spectral_bins + 2 * (3 + spectral_bins)  # the picture, the spectra, both in one array and that upside down
     floats = max(picture, denoising if denoised else 0, spectrum if spectral_bins else 0)
     return pixels * _BYTES_OF_A_FLOAT * floats + (min(pixels * _DENOISER_PER_PIXEL, _DENOISER_AT_MOST) if denoised else 0)

@@ -271,6 +271,20 @@ def test_denoising_ends_when_it_is_told_to():
     assert clean.std() < 0.5 * noisy.std()
 
 
+def test_a_wall_seen_through_smoke_is_denoised_although_its_guides_have_the_same_noise():
+    """The same paths meet wall or smoke in the picture and in its guides, whose noise must not pass for a pattern of the wall."""
+    from opal_kernels import denoise
+
+    if reason := denoise.unavailable():
+        pytest.skip(reason)
+    met = np.random.default_rng(7).binomial(32, 0.5, (128, 128, 1)).astype(np.float32) / 32
+    noisy = met * np.float32(0.4) + (1 - met) * np.float32([0.5, 0.1, 0.02])
+    clean = denoise.denoise(noisy, met * np.full(3, 0.4, np.float32), met * np.float32([0.0, 0.0, 1.0]))
+    assert clean.mean() == pytest.approx(noisy.mean(), rel=0.02)
+    left = np.sqrt(clean.var(axis=(0, 1)).sum() / noisy.var(axis=(0, 1)).sum())
+    assert left < 0.2, f"{left:.2f} of the noise is left"
+
+
 @needs_embree
 def test_emissive_faces_light_the_floor(scene):
     floor(scene)
