@@ -164,6 +164,8 @@ def beside_cycles(repeats: int, reference_samples: int) -> list[dict]:
 
     scene = fog_box.build()
     bpy.data.objects.remove(bpy.data.objects["Glass ball"])
+    for name in ("photons_carry", "volume_photons_per_pass", "volume_radius", "samples_per_pass", "use_adaptive_sampling"):
+        scene.opal.property_unset(name)  # paths alone are compared, with the defaults, not the example's photons
     against_cycles.settle()
     scene.opal.time_limit = 0.0
     samples, found = {"CYCLES": 64, "OPAL": 32}, {}
