@@ -113,11 +113,24 @@ def test_volumes_alone_are_compared_region_by_region():
 
 
 def test_equal_time_gives_cycles_what_opal_took():
+    """Cycles is told the seconds; how well it keeps to them on a busy machine is its own affair."""
     scene = ordinary(24, 18)
     scene.opal.passes = 64
-    assert bpy.ops.opal.compare_cycles(equal="TIME") == {"FINISHED"}
-    seconds = result()["seconds"]
-    assert seconds["cycles"] == pytest.approx(seconds["opal"], abs=0.5 + 0.5 * seconds["opal"])
+    told = []
+
+    def note(scene, _depsgraph=None):
+        if scene.render.engine == "CYCLES":
+            told.append((scene.cycles.time_limit, scene.cycles.samples, scene.cycles.use_adaptive_sampling))
+
+    bpy.app.handlers.render_pre.append(note)
+    try:
+        assert bpy.ops.opal.compare_cycles(equal="TIME") == {"FINISHED"}
+    finally:
+        bpy.app.handlers.render_pre.remove(note)
+    (limit, samples, adaptive), *more = told
+    assert not more
+    assert limit == pytest.approx(max(0.1, result()["seconds"]["opal"]), rel=1e-5)
+    assert samples >= 1 << 20 and not adaptive, "time alone ends it"
 
 
 def test_an_edited_twin_is_compared_as_it_is_and_named():
