@@ -214,20 +214,26 @@ def outliers(image, converged):
     return int(np.sum(away > 5)), int(np.sum(away < -5))
 
 
+@pytest.fixture(scope="module")
+def converged_box():
+    with Scene(threads=2) as scene:
+        report_box(scene)
+        return picture(scene, 4, SIZE, samples_per_pass=192, photons_per_pass=0, max_depth=32)
+
+
 @pytest.mark.parametrize("estimate", VolumeEstimate)
-def test_passes_take_away_the_spots_and_blotches_of_the_fog_box(estimate):
+def test_passes_take_away_the_spots_and_blotches_of_the_fog_box(estimate, converged_box):
     """10,000 photons, 100 gathered, 5 steps a ray, extinction 0.5. A pass has bright spots and dark blotches; passes leave none of
     either: a normal distribution has 6e-7 of its pixels beyond 5 deviations, so of 484 none is expected."""
     with Scene(threads=2) as scene:
         report_box(scene)
-        converged = picture(scene, 4, SIZE, samples_per_pass=192, photons_per_pass=0, max_depth=32)
         settings = {"photons_carry": Carry.INDIRECT, "volume_estimate": estimate, "gather": 100, "march_steps": 5, "march_tolerance": 0.0}
         bright, dark = [], []
         with Render(scene, width=SIZE, height=SIZE, samples_per_pass=1, photons_per_pass=10_000, max_depth=32, **settings) as render:
             for number in range(64):
                 render.run_pass(number)
                 if number in (0, 7, 63):
-                    above, below = outliers(render.film()[..., :3].astype(np.float64), converged)
+                    above, below = outliers(render.film()[..., :3].astype(np.float64), converged_box)
                     bright.append(above)
                     dark.append(below)
     for counts in (bright, dark):
