@@ -200,7 +200,7 @@ class CameraPath {
   int layer_of(const MediumHere &here, const Vec3 &light, const Vec3 &onward) const;
   int layer_of(const MediumHere &here) const { return keeps_layers_ ? here.layer_of(w_, 0) : 0; }
   // Media that the layers' base leaves out, before the first event: a clear path is not stopped by them.
-  void part_veil(float t_end);
+  void part_veil();
   void see_through(float t, bool ends);
   // What they let through between the ray's origin and t; by quadrature where they vary, for it only weighs what is measured.
   Spectrum veil_transmittance(float t) const;

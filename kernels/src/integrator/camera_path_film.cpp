@@ -52,7 +52,7 @@ int CameraPath::layer_of(const MediumHere &here, const Vec3 &light, const Vec3 &
   return keeps_layers_ ? here.layer_of(w_, dot(light, onward)) : 0;
 }
 
-void CameraPath::part_veil(float t_end) {
+void CameraPath::part_veil() {
   veil_ = {};
   if (layers_.any_event()) return;
   MediumSet stopping;

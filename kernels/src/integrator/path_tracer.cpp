@@ -54,7 +54,7 @@ void CameraPath::step() {
   if (escapes(scene_, ray_, hit)) entered_.leave_bodies();
   media_ = media_that_fill(scene_, entered_, interior_);
   counts_.media_passed_over += media_.passed_over();
-  if (keeps_layers_) part_veil(hit.t);
+  if (keeps_layers_) part_veil();
   if (!media_.empty()) {
     trail_.close();
     if (travel_in_medium(hit.t)) return;
