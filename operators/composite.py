@@ -86,6 +86,9 @@ class OPAL_OT_composite(bpy.types.Operator, WritesFile):
         except (render_scene.RenderFailed, OpalError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+        if bpy.app.version < (5, 0) and context.scene.world is not None and context.scene.world.opal.kind != "NONE":
+            # Cycles 4.5 marches such a world to a sun in steps as long as the way over their greatest number: past all of the haze.
+            told += "; under this world's haze Cycles of Blender 4.5 does not dim the sun, so that the ground of its base is too bright"
         if self.use_nodes:
             told += self._build_nodes(context.scene, images, owner)
         self.report({"INFO"}, f"Base {base.seconds:.1f} s, layers {rendered.seconds:.1f} s, in the image “{whole.name}”" + told)

@@ -49,7 +49,8 @@ def test_volumes_of_nodes_stay_cycles_own_and_the_picture_is_whole():
 @pytest.mark.parametrize("kind", ["MEDIUM", "RAINBOW"])
 def test_under_haze_or_rain_to_the_horizon_the_composite_is_the_full_render(kind):
     """By rows, from the ground before the camera over the horizon, where hardly a path comes through, to the sky. The sky is
-    dim beside the sun: of its light on the ground Cycles itself lets 4 % too much through such a world (docs/composite.md)."""
+    dim beside the sun: of its light on the ground Cycles itself lets 4 % too much through such a world (docs/composite.md). Cycles of
+    Blender 4.5 lets all of the sun through, so that there only what stands before the sky is compared."""
     scene = stage.scene(10, 12, passes=12, samples=8)
     scene.cycles.samples, scene.cycles.device, scene.cycles.seed = 48, "CPU", 3
     stage.plane("Ground", size=20_000, material=stage.matte(color=(0.5, 0.4, 0.3)))
@@ -62,6 +63,8 @@ def test_under_haze_or_rain_to_the_horizon_the_composite_is_the_full_render(kind
     stage.camera((0, 0, 10), (1.6, 0, 0), clip_end=1e5)
     composite, full = both()
     rows = composite[..., :3].mean(1) / full[..., :3].mean(1)
+    if bpy.app.version < (5, 0):
+        rows = rows[6:]
     np.testing.assert_allclose(rows, 1.0, atol=0.025, err_msg=str(np.round(rows[:, 1], 3)))
     through = layer_stage.pixels("Opal Transmittance")[..., 1].mean(1)
     assert through.min() < 0.1 and through.max() > 0.9, through
