@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrator/render.h"
 
-#include "core/large_pages.h"
-
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "film/spectral_film.h"
@@ -17,17 +15,12 @@ namespace {
 constexpr int kTile = 16;
 constexpr uint32_t kPhotonChunk = 4096;
 
-// Everything of all chunks, in their order; it leaves them.
+// What all chunks have left of one kind, in their order; it leaves them.
 template <class T>
-std::vector<T> gathered(std::vector<PhotonChunk> &chunks, std::vector<T> PhotonChunk::*part) {
-  size_t total = 0;
-  for (const PhotonChunk &chunk : chunks) total += (chunk.*part).size();
-  std::vector<T> all;
-  reserve_large(all, total);
-  for (PhotonChunk &chunk : chunks) {
-    all.insert(all.end(), (chunk.*part).begin(), (chunk.*part).end());
-    chunk.*part = {};
-  }
+Chunks<T> taken(std::vector<PhotonChunk> &chunks, std::vector<T> PhotonChunk::*part) {
+  Chunks<T> all;
+  all.reserve(chunks.size());
+  for (PhotonChunk &chunk : chunks) all.push_back(std::move(chunk.*part));
   return all;
 }
 
@@ -107,10 +100,10 @@ bool Render::trace_photons_of(PassContext &pass, PassBuffer &buffer, SplatSums &
 // The photons of a pass, ready to be looked up: on surfaces, and in media points or beams, whichever the estimate takes.
 void Render::build_maps(PassContext &pass, std::vector<PhotonChunk> &chunks) {
   const opal_render_settings &settings = pass.settings;
-  pass.photons.build(gathered(chunks, &PhotonChunk::photons), surface_radius(scene_, settings, pass.pass), threads_);
+  pass.photons.build(taken(chunks, &PhotonChunk::photons), surface_radius(scene_, settings, pass.pass), threads_);
   const auto of_media = [&](auto part) {
-    auto all = gathered(chunks, part);
-    statistics_.volume_photons_stored += int64_t(all.size());
+    auto all = taken(chunks, part);
+    statistics_.volume_photons_stored += int64_t(starts_of(all).back());
     return all;
   };
   const float radius = settings.volume_radius > 0 ? settings.volume_radius : settings.radius;

@@ -7,11 +7,8 @@
 // bare items; a query brings the radius by which they are widened.
 #pragma once
 
-#include "core/vec.h"
-
-#include <cstdint>
-#include <functional>
-#include <vector>
+#include "core/radix_sort.h"
+#include "photons/curve_of_sets.h"
 
 namespace opal {
 
@@ -19,10 +16,30 @@ class BlockTree {
  public:
   static constexpr int kWidth = 8;
 
-  // Sorts n items by (set, place). `box_of(i)` and `set_of(i)` (0..7) describe item i and may run on any thread.
-  // Returns the sorted order: order[k] is the item now at place k. Same result on any number of threads.
-  std::vector<uint32_t> build(size_t n, const std::function<Bounds(size_t)> &box_of,
-                              const std::function<uint32_t(size_t)> &set_of, int threads);
+  // Sorts items by their keys of the curve and puts the tree over them; box_of(item) may run on any thread. The same
+  // result on any number of threads.
+  template <class Item, class BoxOf>
+  void build(LargeArray<Keyed<Item>> &items, const BoxOf &box_of, int threads) {
+    radix_sort(items, CurveOfSets::kBits, threads);
+    lay_out(items);
+    for (uint32_t s = 0; s < kSets; ++s) {
+      for (int level = 0; level < levels_[s]; ++level)
+        for_slices(nodes_of(s, level), threads, [&](size_t, size_t from, size_t to) {
+          for (size_t k = from * kWidth; k < to * kWidth; ++k) {
+            Bounds box;
+            if (k >= boxes_[s][level]) {
+            } else if (level > 0) {
+              box = nodes_[level_start_[s][level - 1] + k].all();
+            } else {
+              const size_t end = std::min(size_t(last(s)), first(s) + (k + 1) * kWidth);
+              for (size_t i = first(s) + k * kWidth; i < end; ++i) box.extend(box_of(items[i].item));
+            }
+            nodes_[level_start_[s][level] + k / kWidth].put(int(k % kWidth), box);
+          }
+        });
+      if (levels_[s] > 0) bounds_[s] = nodes_[level_start_[s][levels_[s] - 1]].all();
+    }
+  }
 
   bool empty() const { return starts_[kSets] == 0; }
   // Places first .. last-1 hold the items of a set.
@@ -75,6 +92,38 @@ class BlockTree {
     }
   };
 
+  // Where the sets begin in sorted items, and where each level's nodes are: boxes of leaves from the items, those of every
+  // level from the one below.
+  template <class Item>
+  void lay_out(const LargeArray<Keyed<Item>> &items) {
+    *this = {};
+    size_t total = 0;
+    for (uint32_t s = 0, k = 0; s < kSets; ++s) {
+      const uint64_t end = uint64_t(s + 1) << (3 * CurveOfSets::kAxisBits);
+      k = uint32_t(first_not_below(items, k, end));
+      starts_[s + 1] = k;
+      size_t boxes = (last(s) - first(s) + kWidth - 1) / kWidth;
+      while (boxes > 0) {
+        boxes_[s][levels_[s]] = boxes;
+        level_start_[s][levels_[s]++] = total;
+        total += (boxes + kWidth - 1) / kWidth;
+        boxes = boxes > kWidth ? (boxes + kWidth - 1) / kWidth : 0;
+      }
+    }
+    nodes_ = LargeArray<Node>(total);
+  }
+  template <class Item>
+  static size_t first_not_below(const LargeArray<Keyed<Item>> &items, size_t from, uint64_t key) {
+    size_t to = items.size();
+    while (from < to) {
+      const size_t middle = (from + to) / 2;
+      if (items[middle].key < key) from = middle + 1;
+      else to = middle;
+    }
+    return from;
+  }
+  size_t nodes_of(uint32_t set, int level) const { return (boxes_[set][level] + kWidth - 1) / kWidth; }
+
   template <class Visit, class Meets>
   void traverse(uint32_t set, const Visit &visit, const Meets &meets) const {
     if (first(set) == last(set)) return;
@@ -105,7 +154,7 @@ class BlockTree {
     }
   }
 
-  std::vector<Node> nodes_;
+  LargeArray<Node> nodes_;
   uint32_t starts_[kSets + 1] = {};
   Bounds bounds_[kSets];
   int levels_[kSets] = {};

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "photons/photon_map.h"
 
-#include "core/large_pages.h"
-#include "core/parallel.h"
+#include "core/radix_sort.h"
 #include "core/sampler.h"
 
 #include <bit>
@@ -39,31 +38,36 @@ uint32_t PhotonMap::bucket_of(const Photon &photon) const {
   return bucket_of(int64_t(std::floor(g.x)), int64_t(std::floor(g.y)), int64_t(std::floor(g.z)), photon.set);
 }
 
-void PhotonMap::build(std::vector<Photon> &&photons, float radius, int threads) {
+void PhotonMap::build(Chunks<Photon> &&chunks, float radius, int threads) {
   radius_ = radius;
-  photons_.clear();
-  starts_.clear();
-  if (photons.empty() || !(radius > 0)) return;
-  Bounds bounds;
-  for (const Photon &p : photons) bounds.extend(p.position);
-  origin_ = bounds.low;
-  mask_ = uint32_t(std::bit_ceil(photons.size()) - 1);
-
-  // A counting sort, stable, so that the order inside a bucket is the order of emission.
-  std::vector<uint32_t> bucket(photons.size());
-  const std::atomic<bool> never{false};
-  constexpr int64_t kChunk = 16384;
-  parallel_for((int64_t(photons.size()) + kChunk - 1) / kChunk, threads, never, [&](int64_t c) {
-    const size_t last = std::min(photons.size(), size_t((c + 1) * kChunk));
-    for (size_t i = size_t(c * kChunk); i < last; ++i) bucket[i] = bucket_of(photons[i]);
+  photons_ = {};
+  starts_ = {};
+  const std::vector<size_t> starts = starts_of(chunks);
+  const size_t n = starts.back();
+  if (n == 0 || !(radius > 0)) return;
+  std::vector<Bounds> bounds(chunks.size());
+  for_chunks(chunks, threads, [&](size_t c) {
+    for (const Photon &p : chunks[c]) bounds[c].extend(p.position);
   });
-  starts_.assign(size_t(mask_) + 2, 0);
-  for (const uint32_t b : bucket) ++starts_[size_t(b) + 1];
-  for (size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
-  std::vector<uint32_t> next(starts_.begin(), starts_.end() - 1);
-  reserve_large(photons_, photons.size());
-  photons_.resize(photons.size());
-  for (size_t i = 0; i < photons.size(); ++i) photons_[next[bucket[i]]++] = photons[i];
+  for (const Bounds &b : bounds) bounds[0].extend(b);
+  origin_ = bounds[0].low;
+  mask_ = uint32_t(std::bit_ceil(n) - 1);
+
+  // Stable, so that the order inside a bucket is the order of emission.
+  LargeArray<Keyed<const Photon *>> keyed(n);
+  for_chunks(chunks, threads, [&](size_t c) {
+    for (size_t i = 0; i < chunks[c].size(); ++i) keyed[starts[c] + i] = {bucket_of(chunks[c][i]), &chunks[c][i]};
+  });
+  radix_sort(keyed, std::bit_width(mask_), threads);
+  photons_ = LargeArray<Photon>(n);
+  starts_ = LargeArray<uint32_t>(size_t(mask_) + 2);
+  for_slices(n, threads, [&](size_t, size_t from, size_t to) {
+    for (size_t k = from; k < to; ++k) {
+      photons_[k] = *keyed[k].item;
+      for (size_t b = k > 0 ? size_t(keyed[k - 1].key) + 1 : 0; b <= keyed[k].key; ++b) starts_[b] = uint32_t(k);
+    }
+  });
+  for (size_t b = size_t(keyed[n - 1].key) + 1; b < starts_.size(); ++b) starts_[b] = uint32_t(n);
 }
 
 }  // namespace opal

@@ -6,11 +6,12 @@
 // radius) over position and set.
 #pragma once
 
+#include "core/large_array.h"
 #include "core/spectrum.h"
 #include "core/vec.h"
+#include "photons/chunks.h"
 
 #include <cstdint>
-#include <vector>
 
 namespace opal {
 
@@ -30,7 +31,7 @@ static_assert(sizeof(Photon) <= 64);
 class PhotonMap {
  public:
   // Takes the photons and sorts them into the grid. `radius` is the largest that will be asked for.
-  void build(std::vector<Photon> &&photons, float radius, int threads);
+  void build(Chunks<Photon> &&photons, float radius, int threads);
   bool empty() const { return photons_.empty(); }
   size_t size() const { return photons_.size(); }
   float radius() const { return radius_; }
@@ -62,8 +63,8 @@ class PhotonMap {
   uint32_t bucket_of(int64_t x, int64_t y, int64_t z, uint32_t set) const;
   uint32_t bucket_of(const Photon &photon) const;
 
-  std::vector<Photon> photons_;
-  std::vector<uint32_t> starts_;  // first photon of each bucket, and one past the last
+  LargeArray<Photon> photons_;
+  LargeArray<uint32_t> starts_;  // first photon of each bucket, and one past the last
   float radius_ = 0;
   Vec3 origin_;
   uint32_t mask_ = 0;

@@ -1,27 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "photons/volume_map.h"
 
-#include "core/large_pages.h"
-#include "core/parallel.h"
 #include "core/sampler.h"
 
 #include <cmath>
+#include <numeric>
 
 namespace opal {
-namespace {
-
-// Runs task(k) for k in [0, n), many at a time on each thread.
-template <class Task>
-void in_chunks(size_t n, int threads, const Task &task) {
-  constexpr size_t kChunk = 1 << 16;
-  const std::atomic<bool> never{false};
-  parallel_for(int64_t((n + kChunk - 1) / kChunk), threads, never, [&](int64_t c) {
-    for (size_t k = size_t(c) * kChunk; k < std::min(n, size_t(c + 1) * kChunk); ++k) task(k);
-  });
-}
-
-}  // namespace
-
 uint32_t media_key(const MediumSet &media) {
   uint32_t key = 0;
   for (int i = 0; i < media.count(); ++i) key += hash32(media[i].instance, uint32_t(media[i].medium));
@@ -53,48 +38,83 @@ float VolumeMap::typical_distance(int gather) const {
   return *middle;
 }
 
-void VolumeMap::build(std::vector<VolumePhoton> &&photons, float radius, float shrunk, int gather, int threads) {
+void VolumeMap::build(Chunks<VolumePhoton> &&chunks, float radius, float shrunk, int gather, int threads) {
   *this = {};
-  if (photons.empty()) return;
-  const std::vector<uint32_t> order = tree_.build(
-      photons.size(), [&](size_t i) { return Bounds{photons[i].position, photons[i].position}; },
-      [&](size_t i) { return photons[i].set; }, threads);
-  reserve_large(photons_, photons.size());
-  photons_.resize(photons.size());
-  in_chunks(order.size(), threads, [&](size_t k) { photons_[k] = photons[order[k]]; });
+  const std::vector<size_t> starts = starts_of(chunks);
+  const size_t n = starts.back();
+  if (n == 0) return;
+  std::vector<Bounds> bounds(chunks.size());
+  for_chunks(chunks, threads, [&](size_t c) {
+    for (const VolumePhoton &photon : chunks[c]) bounds[c].extend(photon.position);
+  });
+  for (const Bounds &b : bounds) bounds[0].extend(b);
+
+  const CurveOfSets curve(bounds[0]);
+  LargeArray<Keyed<const VolumePhoton *>> keyed(n);
+  for_chunks(chunks, threads, [&](size_t c) {
+    for (size_t i = 0; i < chunks[c].size(); ++i) {
+      const VolumePhoton &photon = chunks[c][i];
+      keyed[starts[c] + i] = {curve.key(photon.set, photon.position), &photon};
+    }
+  });
+  tree_.build(keyed, [](const VolumePhoton *photon) { return Bounds{photon->position, photon->position}; }, threads);
+  photons_ = LargeArray<VolumePhoton>(n);
+  for_slices(n, threads, [&](size_t, size_t from, size_t to) {
+    for (size_t k = from; k < to; ++k) photons_[k] = *keyed[k].item;
+  });
   radius_ = radius > 0 ? radius : typical_distance(gather) * shrunk;
 }
 
-void VolumeMap::build(std::vector<PhotonBeam> &&beams, float radius, int threads) {
+void VolumeMap::build(Chunks<PhotonBeam> &&chunks, float radius, int threads) {
   *this = {};
-  if (beams.empty() || !(radius > 0)) return;
-  beams_ = std::move(beams);
+  const size_t n = starts_of(chunks).back();
+  if (n == 0 || !(radius > 0)) return;
+  beams_ = std::move(chunks);
+  n_beams_ = n;
   radius_ = radius;
-  // Short pieces make tight boxes and a tall tree: sixteen to a beam while that is cheap, and where beams are many all but the
-  // longest in one.
-  double total = 0;
-  for (const PhotonBeam &beam : beams_) total += double(beam.length);
-  const double per_beam = std::min(4e6 / double(beams_.size()), 16.0);
-  const float wanted = std::max(float(total / (double(beams_.size()) * per_beam)), 2 * radius);
-  std::vector<Piece> pieces;
-  reserve_large(pieces, size_t(double(beams_.size()) * (per_beam + 1)));
-  for (uint32_t i = 0; i < beams_.size(); ++i) {
-    const uint32_t count = uint32_t(std::clamp(std::ceil(beams_[i].length / wanted), 1.0f, 64.0f));
-    for (uint32_t k = 0; k < count; ++k) pieces.push_back({i, uint16_t(k), uint16_t(count)});
-  }
-  const std::vector<uint32_t> order = tree_.build(
-      pieces.size(),
-      [&](size_t i) {
-        const PhotonBeam &beam = beams_[pieces[i].beam];
-        Bounds box;
-        box.extend(beam.at(pieces[i].start(beam)));
-        box.extend(beam.at(pieces[i].end(beam)));
-        return box;
-      },
-      [&](size_t i) { return beams_[pieces[i].beam].set; }, threads);
-  reserve_large(pieces_, pieces.size());
-  pieces_.resize(pieces.size());
-  in_chunks(order.size(), threads, [&](size_t k) { pieces_[k] = pieces[order[k]]; });
+
+  std::vector<Bounds> bounds(beams_.size());
+  std::vector<double> lengths(beams_.size(), 0.0);
+  for_chunks(beams_, threads, [&](size_t c) {
+    for (const PhotonBeam &beam : beams_[c]) {
+      lengths[c] += double(beam.length);
+      bounds[c].extend(beam.origin);
+      bounds[c].extend(beam.at(beam.length));
+    }
+  });
+  for (const Bounds &b : bounds) bounds[0].extend(b);
+  const double total = std::accumulate(lengths.begin(), lengths.end(), 0.0);
+
+  // Short pieces make tight boxes and a tall tree: sixteen to a beam while that is cheap, and where beams are many all but
+  // the longest in one.
+  const double per_beam = std::min(4e6 / double(n), 16.0);
+  const float wanted = std::max(float(total / (double(n) * per_beam)), 2 * radius);
+  const auto pieces_of = [wanted](const PhotonBeam &beam) {
+    return uint32_t(std::clamp(std::ceil(beam.length / wanted), 1.0f, 64.0f));
+  };
+  std::vector<size_t> starts(beams_.size() + 1, 0);
+  for_chunks(beams_, threads, [&](size_t c) {
+    for (const PhotonBeam &beam : beams_[c]) starts[c + 1] += pieces_of(beam);
+  });
+  for (size_t c = 0; c < beams_.size(); ++c) starts[c + 1] += starts[c];
+
+  const CurveOfSets curve(bounds[0]);
+  LargeArray<Keyed<Piece>> keyed(starts.back());
+  for_chunks(beams_, threads, [&](size_t c) {
+    size_t next = starts[c];
+    for (const PhotonBeam &beam : beams_[c]) {
+      const uint32_t count = pieces_of(beam);
+      for (uint32_t k = 0; k < count; ++k) {
+        const Piece piece{&beam, k, count};
+        keyed[next++] = {curve.key(beam.set, piece.box().centre()), piece};
+      }
+    }
+  });
+  tree_.build(keyed, [](const Piece &piece) { return piece.box(); }, threads);
+  pieces_ = LargeArray<Piece>(keyed.size());
+  for_slices(keyed.size(), threads, [&](size_t, size_t from, size_t to) {
+    for (size_t k = from; k < to; ++k) pieces_[k] = keyed[k].item;
+  });
 }
 
 bool VolumeMap::clip(const Vec3 &origin, const Vec3 &direction, uint32_t set, float &t_min, float &t_max) const {
@@ -113,7 +133,7 @@ bool VolumeMap::clip(const Vec3 &origin, const Vec3 &direction, uint32_t set, fl
 
 int64_t VolumeMap::memory_bytes() const {
   return tree_.memory_bytes() +
-         int64_t(photons_.size() * sizeof(VolumePhoton) + beams_.size() * sizeof(PhotonBeam) + pieces_.size() * sizeof(Piece));
+         int64_t(photons_.size() * sizeof(VolumePhoton) + n_beams_ * sizeof(PhotonBeam) + pieces_.size() * sizeof(Piece));
 }
 
 }  // namespace opal

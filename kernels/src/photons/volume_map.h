@@ -3,6 +3,7 @@
 #pragma once
 
 #include "photons/block_tree.h"
+#include "photons/chunks.h"
 #include "photons/volume_photon.h"
 
 namespace opal {
@@ -11,12 +12,12 @@ class VolumeMap {
  public:
   // Takes the photons (or the beams). `radius` 0 takes that which holds about `gather` of the nearest photons, times
   // `shrunk`, the factor by which passes have shrunk it.
-  void build(std::vector<VolumePhoton> &&photons, float radius, float shrunk, int gather, int threads);
-  void build(std::vector<PhotonBeam> &&beams, float radius, int threads);
+  void build(Chunks<VolumePhoton> &&photons, float radius, float shrunk, int gather, int threads);
+  void build(Chunks<PhotonBeam> &&beams, float radius, int threads);
 
-  bool empty() const { return photons_.empty() && beams_.empty(); }
-  bool holds_beams() const { return !beams_.empty(); }
-  size_t size() const { return photons_.size() + beams_.size(); }
+  bool empty() const { return size() == 0; }
+  bool holds_beams() const { return n_beams_ > 0; }
+  size_t size() const { return photons_.size() + n_beams_; }
   float radius() const { return radius_; }
   int64_t memory_bytes() const;
 
@@ -48,10 +49,10 @@ class VolumeMap {
   void crossings(const Vec3 &origin, const Vec3 &direction, float t_max, uint32_t set, const Visit &visit) const {
     tree_.along(origin, direction, t_max, radius_, set, [&](uint32_t k) {
       const Piece &piece = pieces_[k];
-      const PhotonBeam &beam = beams_[piece.beam];
+      const PhotonBeam &beam = *piece.beam;
       Crossing c;
       if (!cross(origin, direction, beam, c) || !(c.distance < radius_)) return;
-      if (c.t > 0 && c.t < t_max && c.s >= piece.start(beam) && c.s < piece.end(beam)) visit(beam, c);
+      if (c.t > 0 && c.t < t_max && c.s >= piece.start() && c.s < piece.end()) visit(beam, c);
     });
   }
 
@@ -61,19 +62,24 @@ class VolumeMap {
  private:
   // Beams are longer than boxes should be: the tree holds pieces of them.
   struct Piece {
-    uint32_t beam;
-    uint16_t number, count;
-    float start(const PhotonBeam &b) const { return b.length * (float(number) / float(count)); }
-    float end(const PhotonBeam &b) const {
-      return number + 1 == count ? b.length : b.length * (float(number + 1) / float(count));
+    const PhotonBeam *beam;
+    uint32_t number, count;
+    float start() const { return beam->length * (float(number) / float(count)); }
+    float end() const { return number + 1 == count ? beam->length : beam->length * (float(number + 1) / float(count)); }
+    Bounds box() const {
+      Bounds box;
+      box.extend(beam->at(start()));
+      box.extend(beam->at(end()));
+      return box;
     }
   };
   float typical_distance(int gather) const;
 
   BlockTree tree_;
-  std::vector<VolumePhoton> photons_;  // in the tree's order
-  std::vector<PhotonBeam> beams_;      // in the order of emission
-  std::vector<Piece> pieces_;          // in the tree's order
+  LargeArray<VolumePhoton> photons_;  // in the tree's order
+  LargeArray<Piece> pieces_;          // in the tree's order
+  Chunks<PhotonBeam> beams_;          // in the order of emission
+  size_t n_beams_ = 0;
   float radius_ = 0;
 };
 
