@@ -135,22 +135,26 @@ def estimates(name: str, seconds: float) -> list[dict]:
     ]
 
 
-def search(photons: int = 300_000) -> list[dict]:
-    """What building the search structure takes of tracing, and bytes a photon, in the fog box."""
+def search(stored: int = 10_000_000) -> list[dict]:
+    """What building the search structure of so many photons (or beams) takes of the time that tracing them took, in the fog box."""
     from opal_kernels.descriptions import Carry, VolumeEstimate
     from opal_kernels.render import Render
     from opal_kernels.scene import Scene
 
-    records = []
-    for estimate in VolumeEstimate:
+    def traced(estimate: VolumeEstimate, photons: int) -> dict:
         with Scene() as scene:
             fog(scene)
             with Render(scene, width=8, height=8, samples_per_pass=1, photons_per_pass=photons, photons_carry=Carry.INDIRECT,
                         volume_estimate=estimate) as render:  # fmt: skip
-                s = render.run(1).statistics
-        traced = s["photon_seconds"] - s["search_seconds"]
-        records.append({"what": "search", "estimate": estimate.name, "stored": s["volume_photons_stored"], "seconds": s["search_seconds"],
-                        "ratio": s["search_seconds"] / traced})  # fmt: skip
+                return render.run(1).statistics
+
+    records, trial = [], 100_000
+    for estimate in VolumeEstimate:
+        photons = round(stored * trial / traced(estimate, trial)["volume_photons_stored"])
+        s = traced(estimate, photons)
+        seconds = s["search_seconds"]
+        records.append({"what": "search", "estimate": estimate.name, "stored": s["volume_photons_stored"], "seconds": seconds,
+                        "ratio": seconds / (s["photon_seconds"] - seconds)})  # fmt: skip
     return records
 
 
@@ -206,7 +210,9 @@ def report(records: list[dict]) -> None:
                 f"{r['scene']:6s} {r['estimate']:14s} {r['seconds']:7.2f} s to relative MSE {r['error']:.4f} (at the end {r['last_error']:.4f})"
             )
         elif r["what"] == "search":
-            print(f"search {r['estimate']:14s} {r['stored']} stored, built in {r['ratio']:.2f} of the time that tracing took")
+            print(
+                f"search {r['estimate']:14s} {r['stored']} stored, built in {r['seconds']:.2f} s, {r['ratio']:.2f} of the time that tracing took"
+            )
         else:
             cycles, opal = r["seconds"]["CYCLES"], r["seconds"]["OPAL"]
             print(f"fog box to relative MSE {ERROR}: Cycles {cycles:.2f} s, Opal {opal:.2f} s, ratio {r['ratio']:.2f}; means {r['means']}")
