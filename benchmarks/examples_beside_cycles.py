@@ -51,13 +51,16 @@ def measure(scenes: list[str] | None = None) -> list[dict]:
 
 def report(records: list[dict]) -> None:
     """A table in Markdown."""
-    print("| scene | mean of Opal / Cycles (R G B) | PSNR | SSIM | relative MSE | seconds each |")
-    print("|---|---|---|---|---|---|")
+    print("| scene | mean of Opal / Cycles (R G B) | PSNR | SSIM | FLIP | relative MSE | seconds | MB |")
+    print("|---|---|---|---|---|---|---|---|")
     for r in records:
         ratio = " ".join("–" if v is None else f"{v:.3f}" for v in r["mean_ratio"])
         name = r["scene"] + (", media alone" if r["mode"] == "VOLUMES" else "")
         seconds = f"{r['seconds']['opal']:.0f} and {r['seconds']['cycles']:.0f}"
-        print(f"| {name} | {ratio} | {r['psnr']:.1f} dB | {r['ssim']:.3f} | {r['relative_mse']:.3g} | {seconds} |")
+        flip = "–" if r["flip"] is None else f"{r['flip']:.3f}"
+        memory = f"{r['memory']['opal'] / 2**20:.0f} and {r['memory']['cycles'] / 2**20:.0f}"
+        figures = f"{r['psnr']:.1f} dB | {r['ssim']:.3f} | {flip} | {r['relative_mse']:.3g}"
+        print(f"| {name} | {ratio} | {figures} | {seconds} | {memory} |")
         known = [region for region in r.get("regions", ()) if region["ratio"] is not None]
         if known:
             worst = max(known, key=lambda region: abs(math.log(max(region["ratio"], 1e-6))))

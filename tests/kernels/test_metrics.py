@@ -35,6 +35,17 @@ def test_ssim_falls_with_structure_and_not_with_a_little_brightness():
     assert metrics.ssim(noise((48, 48, 3), seed=1), picture) < 0.2
 
 
+def test_flip_takes_the_pictures_as_linear_and_falls_with_likeness():
+    """The package's own conversion of encoded pictures says the same of the encodings of ours."""
+    flip_evaluator = pytest.importorskip("flip_evaluator")
+    picture = noise((48, 48, 3))
+    worse = np.clip(picture + np.random.default_rng(3).normal(0, 0.1, picture.shape), 0, 1)
+    encoded = [metrics.srgb(p).astype(np.float32) for p in (picture, worse)]
+    assert metrics.flip(picture, picture) == 0
+    assert metrics.flip(worse, picture) == pytest.approx(flip_evaluator.evaluate(*encoded, "LDR", inputsRGB=True)[1], rel=1e-4)
+    assert 0 < metrics.flip((picture + worse) / 2, picture) < metrics.flip(worse, picture) < 1
+
+
 def test_regions_find_the_one_that_differs_and_how_sure_that_is():
     """A uniform change of 10 % in one of four regions among noise of 20 % a pixel: found at 8 standard errors."""
     reference = np.full((64, 64, 3), 0.5)
