@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
+from opal_kernels.camera import border_region
 from opal_kernels.descriptions import Carry, Filter, Pass, RenderSettings, VolumeEstimate
 
 PREVIEW_PASSES = 16
@@ -40,16 +40,8 @@ def frame_of(render: Any) -> Frame:
     height = max(1, render.resolution_y * render.resolution_percentage // 100)
     region = (0, 0, width, height)
     if render.use_border:
-        x0, x1 = _border(render.border_min_x, width), _border(render.border_max_x, width)
-        y0, y1 = _border(render.border_min_y, height), _border(render.border_max_y, height)
-        x0, y0 = min(max(x0, 0), width - 1), min(max(y0, 0), height - 1)
-        region = (x0, y0, min(max(x1, x0 + 1), width), min(max(y1, y0 + 1), height))
+        region = border_region(width, height, (render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y))
     return Frame(width, height, region)
-
-
-def _border(part: float, pixels: int) -> int:
-    """Where a border falls. Blender multiplies in single precision: in double, 0.58 of 300 would be 173 and not 174 pixels."""
-    return int(np.float32(part) * np.float32(pixels))
 
 
 def frame_seed(seed: int, frame: int) -> int:

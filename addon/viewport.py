@@ -16,9 +16,11 @@ import gpu
 import numpy as np
 from gpu_extras.presets import draw_texture_2d
 from opal_kernels.binding import OpalError
+from opal_kernels.camera import window_of_region
 
 from . import report, settings, undo_steps
 from .translate.camera import camera_from_view
+from .viewport_border import region_of_view
 from .viewport_sync import SceneSync
 from .viewport_worker import Pace, Worker
 
@@ -42,6 +44,8 @@ class Viewport:
         self._undo_steps = undo_steps.count
         self._texture: Any = None
         self._texture_of: np.ndarray | None = None
+        # Left, bottom, right and top of what the worker and the texture show, in fractions of the view.
+        self._place = self._texture_place = (0.0, 0.0, 1.0, 1.0)
 
     def close(self) -> None:
         """Stops the thread and frees the scene."""
@@ -94,30 +98,35 @@ class Viewport:
             height, width, _ = picture.shape
             pixels = gpu.types.Buffer("FLOAT", width * height * 4, picture.reshape(-1))
             self._texture = gpu.types.GPUTexture((width, height), format="RGBA16F", data=pixels)
-            self._texture_of = picture
+            self._texture_of, self._texture_place = picture, self._place
         if self._texture is None:
             return
+        x0, y0, x1, y1 = (part * size for part, size in zip(self._texture_place, (region.width, region.height) * 2, strict=True))
         gpu.state.blend_set("ALPHA_PREMULT")
         engine.bind_display_space_shader(scene)
-        draw_texture_2d(self._texture, (0, 0), region.width, region.height)
+        draw_texture_2d(self._texture, (x0, y0), x1 - x0, y1 - y0)
         engine.unbind_display_space_shader()
         gpu.state.blend_set("NONE")
 
     def _restart_if_needed(self, context: Any, depsgraph: Any, region: Any) -> None:
-        scene = depsgraph.scene_eval
+        scene, space, region_data = depsgraph.scene_eval, context.space_data, context.region_data
+        width, height = region.width, region.height
         found = report.of(depsgraph.scene)
         try:
-            camera = camera_from_view(scene, context.space_data, context.region_data, region.width, region.height, found.add)
+            camera = camera_from_view(scene, space, region_data, width, height, found.add)
+            x0, y0, x1, y1 = part = region_of_view(scene, space, region_data, width, height, camera.window)
         except ValueError as error:
             self._engine().update_stats("", f"Error: {error}")
             return
-        frame = settings.Frame(region.width, region.height, (0, 0, region.width, region.height))
+        # What is rendered is a frame of its own: a coarse picture of it has pixels that end where it does.
+        camera = replace(camera, window=window_of_region(camera.window, width, height, part))
+        frame = settings.Frame(x1 - x0, y1 - y0, (0, 0, x1 - x0, y1 - y0))
         wanted = replace(settings.render_settings(scene, frame, preview=True), threads=_threads(scene.render))
         key = (repr(camera), repr(wanted), scene.opal.passes, scene.opal.denoise)
         if key == self._shown:
             return
         self._stop()
-        self._shown = key
+        self._shown, self._place = key, (x0 / width, y0 / height, x1 / width, y1 / height)
         self._worker = Worker(self._sync.scene, camera, wanted, scene.opal.passes, self._pace, _redraw_of(self._engine), scene.opal.denoise)
 
     def _stop(self) -> None:

@@ -143,6 +143,13 @@ def camera_from_object(
     )
 
 
+def looked_through(scene: Any, space: Any, region_data: Any) -> Any:
+    """The object that a 3D view looks through; None where it looks through none."""
+    if region_data.view_perspective != "CAMERA":
+        return None
+    return space.camera if space.use_local_camera else scene.camera
+
+
 def camera_from_view(
     scene: Any,
     space: Any,
@@ -171,12 +178,10 @@ def camera_from_view(
         "clip_start": space.clip_start,
         "clip_end": space.clip_end,
     }
-    if region_data.view_perspective == "CAMERA":
-        looked_through = space.camera if space.use_local_camera else scene.camera
-        if looked_through is not None:
-            window, fields = _lens(looked_through, scene, matrix, report)
-            zoom = 2.0 * optics.view_zoom(region_data.view_camera_zoom)
-            window["offset"] = tuple(region_data.view_camera_offset)
+    if (camera_object := looked_through(scene, space, region_data)) is not None:
+        window, fields = _lens(camera_object, scene, matrix, report)
+        zoom = 2.0 * optics.view_zoom(region_data.view_camera_zoom)
+        window["offset"] = tuple(region_data.view_camera_offset)
     elif region_data.view_perspective == "ORTHO":
         reach = 0.5 * space.clip_end
         window["ortho_scale"] = region_data.view_distance * 36.0 / space.lens

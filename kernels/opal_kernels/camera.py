@@ -14,6 +14,8 @@ from collections.abc import Sequence
 import numpy as np
 
 Window = tuple[float, float, float, float]
+# Left, right, bottom and top in fractions of a frame or a view.
+Border = tuple[float, float, float, float]
 
 
 def fits_horizontally(sensor_fit: str, width: float, height: float) -> bool:
@@ -112,11 +114,45 @@ def depth_along_axis(matrix: Sequence[Sequence[float]], point: Sequence[float]) 
     return float(abs(np.dot(m[:, 2], m[:, 3] - np.asarray(point, dtype=np.float64)[:3])))
 
 
-def border_region(width: int, height: int, border: tuple[float, float, float, float]) -> tuple[int, int, int, int]:
-    """Pixels x0, y0, x1, y1 (y up, ends excluded) of a border left, right, bottom, top in fractions of the frame; at least one."""
-    left, right, bottom, top = (min(max(b, 0.0), 1.0) for b in border)
-    x0, y0 = min(int(left * width), width - 1), min(int(bottom * height), height - 1)
-    return x0, y0, max(int(right * width), x0 + 1), max(int(top * height), y0 + 1)
+def border_region(width: int, height: int, border: Border) -> tuple[int, int, int, int]:
+    """Pixels x0, y0, x1, y1 (y up, ends excluded) of a border; at least one.
+
+    Blender multiplies in single precision: in double, 0.58 of 300 would be 173 and not 174 pixels.
+    """
+    left, right, bottom, top = (np.float32(min(max(b, 0.0), 1.0)) for b in border)
+    across, up = np.float32(width), np.float32(height)
+    x0, y0 = min(int(left * across), width - 1), min(int(bottom * up), height - 1)
+    return x0, y0, max(int(right * across), x0 + 1), max(int(top * up), y0 + 1)
+
+
+def border_in_view(border: Border, frame: Window, view: Window) -> Border:
+    """A border of a camera's frame as one of a 3D view that looks through that camera, which may reach beyond the view.
+
+    Parameters
+    ----------
+    border : tuple of float
+        In fractions of the frame.
+    frame, view : tuple of float
+        Windows (`window`) of the camera's frame and of the view.
+    """
+
+    def along(part: float, axis: int) -> float:
+        low, high = frame[axis : axis + 2]
+        start, end = view[axis : axis + 2]
+        return (low + part * (high - low) - start) / (end - start)
+
+    return along(border[0], 0), along(border[1], 0), along(border[2], 2), along(border[3], 2)
+
+
+def window_of_region(window: Window, width: int, height: int, region: tuple[int, int, int, int]) -> Window:
+    """The window of some pixels (x0, y0, x1, y1; ends excluded) of a frame of so many pixels."""
+
+    def along(pixel: int, pixels: int, axis: int) -> float:
+        part = pixel / pixels
+        return window[axis] * (1 - part) + window[axis + 1] * part  # to the bit the window's own at both its ends
+
+    x0, y0, x1, y1 = region
+    return along(x0, width, 0), along(x1, width, 0), along(y0, height, 2), along(y1, height, 2)
 
 
 def view_zoom(view_camera_zoom: float) -> float:

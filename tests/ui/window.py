@@ -144,10 +144,15 @@ def write_text(text: str) -> None:
 # ---- Pictures ----
 
 
-def screenshot(name: str) -> Path:
-    """The screen as the display holds it: under software OpenGL Blender's own screenshot reads an empty front buffer."""
+def screenshot(name: str, box: tuple[int, int, int, int] | None = None) -> Path:
+    """The screen, or its pixels left, bottom, right, top, as the display holds it: under software OpenGL Blender's own screenshot reads
+    an empty front buffer."""
     path = FOLDER / f"{name}.png"
-    subprocess.run(["import", "-window", "root", str(path)], check=True)
+    part = []
+    if box is not None:
+        left, bottom, right, top = box
+        part = ["-crop", f"{right - left}x{top - bottom}+{left}+{window().height - top}", "+repage"]
+    subprocess.run(["import", "-window", "root", *part, str(path)], check=True)
     return path
 
 
