@@ -7,6 +7,8 @@ from typing import Any
 
 import bpy
 
+from . import empty_result
+
 
 class OpalRenderEngine(bpy.types.RenderEngine):
     """Spectral path tracing with photons for what paths cannot find."""
@@ -42,6 +44,7 @@ class OpalRenderEngine(bpy.types.RenderEngine):
         try:
             from .final_render import render
         except Exception as error:  # Blender 4.5 crashes when it writes the picture of an engine that raised
+            empty_result.hand_back(self, depsgraph)
             self.report({"ERROR"}, f"Opal's kernels do not load: {error}")
             return
         render(self, depsgraph)

@@ -23,7 +23,7 @@ from opal_kernels.render import Render
 from opal_kernels.scene import Scene
 
 from . import capture as captures
-from . import film_files, main_thread, report, settings, spectral_exr, stopping
+from . import empty_result, film_files, main_thread, report, settings, spectral_exr, stopping
 from .identity import Named
 from .render_passes import RenderPass, wanted
 from .stopping import Stopped
@@ -41,9 +41,12 @@ def render(engine: Any, depsgraph: Any) -> None:
     """Renders one view layer into the engine's result; what fails is reported in one sentence."""
     scene = depsgraph.scene
     found = report.start(scene)
+    job = None
     try:
-        _FinalRender(engine, depsgraph, found).run()
-    except Stopped:
+        job = _FinalRender(engine, depsgraph, found)
+        job.run()
+    except Stopped:  # before there was a picture
+        empty_result.hand_back(engine, depsgraph)
         return
     except Exception as error:
         # Blender 4.5 crashes when it writes the picture of an engine that raised.
@@ -56,6 +59,9 @@ def render(engine: Any, depsgraph: Any) -> None:
             sentence = f"Opal failed on this scene ({type(error).__name__}: {error}); the console has the details."
         if (capture := captures.current()) is not None:
             capture.failure = sentence
+        # Where memory is short an empty picture might not fit either: then there is none, and after an error Blender writes none.
+        if (job is None or not job.has_result) and not isinstance(error, MemoryError | _DoesNotFit):
+            empty_result.hand_back(engine, depsgraph)
         engine.report({"ERROR"}, sentence)
         return
     if not engine.is_preview and (summary := found.summary()):
@@ -65,6 +71,10 @@ def render(engine: Any, depsgraph: Any) -> None:
 # A first pass of more camera paths and photons than this is preceded by a coarse picture of so many pixels and photons.
 _LONG_PASS = 2_000_000
 _LOOK_PIXELS, _LOOK_PHOTONS = 20_000, 4_000
+
+
+class _DoesNotFit(OpalError):
+    """The picture is too large for the memory that there is."""
 
 
 class _FinalRender:
@@ -80,6 +90,7 @@ class _FinalRender:
         self.capture = None if engine.is_preview else captures.current()
         self.settings = self._settings()
         self.last_shown = self.last_stage = -np.inf
+        self.has_result = False
 
     def _settings(self) -> RenderSettings:
         kept: list[Pass] = [row.source for row in self.passes]
@@ -97,6 +108,7 @@ class _FinalRender:
         with self._translate() as scene, Render(scene, self.settings) as render:
             width, height = self.frame.region_size
             result = self.engine.begin_result(0, 0, width, height, layer=self.layer.name)
+            self.has_result = True
             try:
                 finished = self._look(scene, result) and self._run_passes(render, result)
                 self._note_overlaps(render)
@@ -125,7 +137,7 @@ class _FinalRender:
         needed += memory.result_bytes(whole, [row.source for row in self.passes])
         available = memory.available_bytes()
         if available is not None and needed > _MEMORY_SHARE * available:
-            raise OpalError(
+            raise _DoesNotFit(
                 f"Rendering {width} x {height} pixels would take {needed / 2**30:.1f} GB of memory and "
                 f"{available / 2**30:.1f} GB are free: lower Resolution or render a border."
             )
