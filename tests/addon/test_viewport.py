@@ -6,6 +6,7 @@ Blender's own tags come from a handler after each evaluation, as the view gets t
 
 import gc
 import threading
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -25,11 +26,15 @@ class View:
     def __init__(self):
         self.sync = stage.addon("viewport_sync").SceneSync(threads=2)
         self.before_change = lambda: None
+        self.workers = []
         bpy.app.handlers.depsgraph_update_post.append(self._updated)
         self.changed = self.sync.update(bpy.context.evaluated_depsgraph_get())
 
     def close(self):
-        bpy.app.handlers.depsgraph_update_post.remove(self._updated)
+        for worker in self.workers:  # also after a test that failed: a thread that goes on in a scene that is freed ends Blender
+            worker.stop()
+        if self._updated in bpy.app.handlers.depsgraph_update_post:  # files take handlers with them
+            bpy.app.handlers.depsgraph_update_post.remove(self._updated)
         self.sync.close()
 
     def _updated(self, _scene, depsgraph):
@@ -351,7 +356,16 @@ def worker_of(view, passes, size=SIZE, seen=None, **options):
 
     pace = options.pop("pace", viewport_worker.Pace(1e-3))
     holder.append(viewport_worker.Worker(view.sync.scene, camera_of(scene, size), wanted(scene, size), passes, pace, redraw, **options))
+    view.workers.append(holder[0])
     return holder[0], pictures
+
+
+def until(condition, what, seconds=60):
+    """Waits for what a thread does; a busy machine takes its time."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, f"{what}: not within {seconds} s"
+        time.sleep(0.005)
 
 
 def test_the_view_refines_from_coarse_pixels_to_its_own(view):
@@ -390,8 +404,6 @@ def test_the_view_is_denoised_where_the_build_can(view):
 
 
 def test_a_stop_ends_the_thread_at_once(view):
-    import time
-
     worker, _ = worker_of(view, 10_000, size=(640, 480))
     time.sleep(0.3)
     begun = time.perf_counter()
@@ -409,8 +421,7 @@ def test_what_is_rendered_goes_away_while_the_thread_runs(view, how, tmp_path):
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "another.blend"), copy=True)
     worker, pictures = worker_of(view, 10_000)
     view.before_change = worker.stop
-    while not pictures:
-        worker.wait(0.02)
+    until(lambda: pictures, "a first picture")
     if how == "the object":
         bpy.data.objects.remove(bpy.data.objects["Gem"])
     elif how == "the material":
@@ -423,13 +434,10 @@ def test_what_is_rendered_goes_away_while_the_thread_runs(view, how, tmp_path):
         bpy.context.scene.render.engine = "CYCLES"
     gc.collect()
     seen = len(pictures)
-    worker.wait(0.3)
-    assert len(pictures) > seen or not worker._thread.is_alive()
+    until(lambda: len(pictures) > seen or not worker._thread.is_alive(), "a picture after it went away")
     bpy.context.view_layer.update()
     worker.stop()
     assert not worker.failure
-    if view._updated not in bpy.app.handlers.depsgraph_update_post:
-        bpy.app.handlers.depsgraph_update_post.append(view._updated)  # files take handlers with them
 
 
 def test_two_view_layers_and_two_scenes_each_get_their_own(view):
