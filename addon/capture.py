@@ -31,6 +31,8 @@ class Capture:
         By view layer, as `opal_kernels.render.Render.statistics` gives them.
     failure : str
         Why a layer could not be rendered.
+    done : float
+        Part of the present layer's render that is done.
     """
 
     passes: Sequence[Pass]
@@ -39,6 +41,7 @@ class Capture:
     passes_done: dict[str, int] = field(default_factory=dict)
     failure: str = ""
     stopped: bool = False
+    done: float = 0.0
 
     def take(self, layer: str, render: Any) -> None:
         """Keeps the films of a view layer's finished render."""

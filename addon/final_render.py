@@ -295,6 +295,8 @@ class _FinalRender:
         remaining = f" | Remaining: {_clock(left)}" if left is not None else ""
         self.engine.update_stats("", f"Pass {number + 1} of {total} | Time: {_clock(elapsed)}{remaining}")
         self.engine.update_progress(fraction)
+        if self.capture is not None:
+            self.capture.done = fraction
 
     # ---- Pixels ----
 

@@ -11,6 +11,7 @@ from . import (
     gem_report,
     import_absorption,
     import_gemcad,
+    long_job,
     menus,
     merge,
     panels,
@@ -22,6 +23,7 @@ from . import (
 )
 
 _MODULES = (
+    long_job,
     add_gem,
     import_gemcad,
     import_absorption,

@@ -23,6 +23,10 @@ class Changed:
                 setattr(owner, name, value)
                 self._before.append((owner, name, before))
 
+    def keep(self, owner: Any, *names: str) -> None:
+        """Remembers attributes that will change with others, to be put back after those."""
+        self._before += [(owner, name, getattr(owner, name)) for name in names if hasattr(owner, name)]
+
     def __enter__(self) -> Changed:
         return self
 

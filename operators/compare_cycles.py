@@ -6,12 +6,15 @@ import json
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
+from .job import Aside, Steps
+from .render_layers import RendersFrame
+
 # Custom property of the scene that holds the last comparison.
 KEY = "opal_comparison"
 SIDE_BY_SIDE, DIFFERENCE = "Opal Side by Side", "Opal Difference"
 
 
-class OPAL_OT_compare_cycles(bpy.types.Operator):
+class OPAL_OT_compare_cycles(bpy.types.Operator, RendersFrame):
     """Compare with Cycles"""
 
     bl_idname = "opal.compare_cycles"
@@ -19,7 +22,8 @@ class OPAL_OT_compare_cycles(bpy.types.Operator):
     bl_description = (
         "Render this frame by both engines with the same camera and light, Opal's materials by their twins, and measure the difference"
     )
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"UNDO"}
+    parts = 2
 
     mode: EnumProperty(
         name="Compare",
@@ -54,11 +58,7 @@ class OPAL_OT_compare_cycles(bpy.types.Operator):
         options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return context.scene is not None and not bpy.app.is_job_running("RENDER")
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def steps(self, context: bpy.types.Context) -> Steps:
         from opal_kernels.binding import OpalError
 
         from . import comparison, render_scene
@@ -75,11 +75,14 @@ class OPAL_OT_compare_cycles(bpy.types.Operator):
                     changed.set(context.scene.opal, use_adaptive_sampling=False)
                 if self.mode == "VOLUMES":
                     comparison.hide_all_but_volumes(changed, scene)
-                ours = render_scene.opal(context)
-                theirs = render_scene.cycles(context, **comparison.cycles_settings(scene, ours, self.equal, self.use_scene_settings))
+                ours = yield from render_scene.opal(context)
+                settings = comparison.cycles_settings(scene, ours, self.equal, self.use_scene_settings)
+                theirs = yield from render_scene.cycles(context, **settings)
             if ours.picture.shape != theirs.picture.shape:
                 raise render_scene.RenderFailed("Cycles and Opal gave pictures of different sizes: turn Crop to Render Region on.")
-            result = comparison.measure(scene, ours, theirs, self.mode, self.equal, self.regions, edited)
+            regions = self.regions if self.mode == "VOLUMES" else 0
+            numbers = yield Aside(lambda _told: comparison.numbers(ours.picture, theirs.picture, regions), "Measuring", owns_all=True)
+            result = comparison.describe(scene, ours, theirs, self.mode, self.equal, edited, numbers)
             pictures = comparison.show(context, ours.picture, theirs.picture, result)
             told = comparison.write(scene, self.filepath, pictures, result) if self.use_file else ""
         except (render_scene.RenderFailed, OpalError) as error:

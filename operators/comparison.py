@@ -26,11 +26,21 @@ def cycles_settings(scene: Any, ours: render_scene.Rendered, equal: str, use_sce
     return {**settings, "samples": ours.passes * scene.opal.samples_per_pass, "time_limit": 0.0}
 
 
-def measure(scene: Any, ours: Any, theirs: Any, mode: str, equal: str, regions: int, edited: list[str]) -> dict[str, Any]:
-    """The comparison's numbers, ready for JSON."""
+def numbers(ours: np.ndarray, theirs: np.ndarray, regions: int) -> dict[str, Any]:
+    """What is different between the pictures; with ``regions``, also in so many along each side. Touches nothing of Blender's."""
     from opal_kernels import metrics
 
-    result = {
+    found = metrics.all_of(ours, theirs)
+    if found["flip"] is None:
+        found["flip_left_out"] = "The package flip_evaluator is not installed."
+    if regions:
+        found["regions"] = metrics.regions(ours, theirs, regions, regions)
+    return found
+
+
+def describe(scene: Any, ours: Any, theirs: Any, mode: str, equal: str, edited: list[str], found: dict[str, Any]) -> dict[str, Any]:
+    """The comparison's numbers with what they are of, ready for JSON."""
+    return {
         "scene": scene.name,
         "frame": scene.frame_current,
         "resolution": [ours.picture.shape[1], ours.picture.shape[0]],
@@ -40,13 +50,8 @@ def measure(scene: Any, ours: Any, theirs: Any, mode: str, equal: str, regions: 
         "seconds": {"opal": ours.seconds, "cycles": theirs.seconds},
         "memory": {"opal": ours.memory, "cycles": theirs.memory},
         "edited_twins": edited,
-        **metrics.all_of(ours.picture, theirs.picture),
+        **found,
     }
-    if result["flip"] is None:
-        result["flip_left_out"] = "The package flip_evaluator is not installed."
-    if mode == "VOLUMES":
-        result["regions"] = metrics.regions(ours.picture, theirs.picture, regions, regions)
-    return result
 
 
 def show(context: Any, ours: np.ndarray, theirs: np.ndarray, result: dict[str, Any]) -> dict[str, np.ndarray]:

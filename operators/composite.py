@@ -7,16 +7,18 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty
 
 from . import layer_names
-from .render_layers import WritesFile
+from .job import Steps
+from .render_layers import RendersFrame, WritesFile
 
 
-class OPAL_OT_composite(bpy.types.Operator, WritesFile):
+class OPAL_OT_composite(bpy.types.Operator, RendersFrame, WritesFile):
     """Composite over Cycles"""
 
     bl_idname = "opal.composite"
     bl_label = "Composite over Cycles"
     bl_description = "Render this frame by Cycles without caustics and without what Opal renders better, and lay Opal's layers over it"
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"UNDO"}
+    parts = 2
 
     layers: EnumProperty(
         name="Layers",
@@ -59,20 +61,16 @@ class OPAL_OT_composite(bpy.types.Operator, WritesFile):
         default=False,
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return context.scene is not None and not bpy.app.is_job_running("RENDER")
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def steps(self, context: bpy.types.Context) -> Steps:
         from opal_kernels.binding import OpalError
 
         from . import cycles_base, float_images, layers, own_images, render_scene
 
         chosen = set(self.layers) | ({"TRANSMITTANCE"} if self.attenuation == "LAYER" else set())
         try:
-            rendered = render_scene.opal(context, layers.passes(chosen))
+            rendered = yield from render_scene.opal(context, layers.passes(chosen))
             with cycles_base.replaced(context.scene, dim_camera=self.attenuation == "BASE"):
-                base = render_scene.cycles(context, **self._cycles_settings(context.scene))
+                base = yield from render_scene.cycles(context, **self._cycles_settings(context.scene))
             over = layers.pictures(rendered.films, chosen, context.scene.render.film_transparent)
             if base.picture.shape != rendered.picture.shape:
                 raise render_scene.RenderFailed("Cycles and Opal gave pictures of different sizes: turn Crop to Render Region on.")

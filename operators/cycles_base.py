@@ -55,12 +55,15 @@ class _Added:
     active: list[str]
 
     def remove(self) -> None:
-        for name in self.nodes:
-            if (node := self.tree.nodes.get(name)) is not None:
-                self.tree.nodes.remove(node)
-        for name in self.active:
-            if (node := self.tree.nodes.get(name)) is not None:
-                node.is_active_output = True
+        try:
+            for name in self.nodes:
+                if (node := self.tree.nodes.get(name)) is not None:
+                    self.tree.nodes.remove(node)
+            for name in self.active:
+                if (node := self.tree.nodes.get(name)) is not None:
+                    node.is_active_output = True
+        except ReferenceError:
+            pass  # its material was deleted meanwhile
 
 
 def _add(owner: Any, plan: Any) -> _Added:

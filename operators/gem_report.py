@@ -2,7 +2,7 @@
 """The eye of a gemmologist: light return, fire, leakage and the tilt curve of the active stone, as numbers and as a page."""
 
 import math
-import threading
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +11,13 @@ from bpy.props import FloatProperty, IntProperty, StringProperty
 
 from ..addon import presets
 from . import image_files
+from .job import Aside, Steps
+from .long_job import LongJob
 
 _NAME = "Gem Report"
 
 
-class OPAL_OT_gem_report(bpy.types.Operator):
+class OPAL_OT_gem_report(bpy.types.Operator, LongJob):
     """Judge the active stone as a gemmologist does"""
 
     bl_idname = "opal.gem_report"
@@ -24,7 +26,7 @@ class OPAL_OT_gem_report(bpy.types.Operator):
         "Render the active stone face-up under a bright hemisphere with the shadow of the observer's head, and measure its light return, "
         "fire, leakage and tilt curve; the stone looks up along its own Z axis"
     )
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"UNDO"}
 
     filepath: StringProperty(
         name="File",
@@ -52,9 +54,6 @@ class OPAL_OT_gem_report(bpy.types.Operator):
     )
     tilt_steps: IntProperty(name="Tilt Steps", description="How many tilts the curve has", default=13, min=3, soft_max=61)
 
-    _timer: Any = None
-    _work: Any = None
-
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         obj = context.active_object
@@ -63,65 +62,20 @@ class OPAL_OT_gem_report(bpy.types.Operator):
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        if not self._prepare(context):
-            return {"CANCELLED"}
-        self._work.run()
-        return self._finish()
+    def steps(self, context: bpy.types.Context) -> Steps:
+        from opal_kernels.binding import OpalError
 
-    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        if bpy.app.background or context.window is None:
-            return self.execute(context)
-        if not self._prepare(context):
-            return {"CANCELLED"}
-        self._work.start()
-        manager = context.window_manager
-        manager.progress_begin(0, 100)
-        self._timer = manager.event_timer_add(0.1, window=context.window)
-        manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
-
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if event.type == "ESC":
-            self._work.stopping = True
-        if event.type != "TIMER":
-            return {"PASS_THROUGH"}
-        if self._work.is_alive():
-            context.window_manager.progress_update(int(100 * self._work.done))
-            if context.workspace is not None:
-                context.workspace.status_text_set(f"Gem report: {self._work.done:.0%}, Esc to stop")
-            return {"RUNNING_MODAL"}
-        self._end(context)
-        return self._finish()
-
-    def cancel(self, context: bpy.types.Context) -> None:
-        self._work.stopping = True
-        self._work.join()
-        self._end(context)
-
-    def _end(self, context: bpy.types.Context) -> None:
-        context.window_manager.event_timer_remove(self._timer)
-        context.window_manager.progress_end()
-        if context.workspace is not None:
-            context.workspace.status_text_set(None)
-
-    def _prepare(self, context: bpy.types.Context) -> bool:
         obj = context.active_object
         try:
             stone, notes = _stone_of(obj, context.evaluated_depsgraph_get())
         except ValueError as error:
             self.report({"ERROR"}, f"“{obj.name}”: {error}")
-            return False
-        self._work = _Work(self, stone, obj.name, notes)
-        return True
-
-    def _finish(self) -> set[str]:
-        work = self._work
-        if work.sentence:
-            self.report({"ERROR"}, work.sentence)
             return {"CANCELLED"}
-        if work.page is None:
-            self.report({"INFO"}, "The gem report was stopped.")
+        work = _Work(self, stone, obj.name, notes)
+        try:
+            yield Aside(work.make, "")
+        except (OpalError, ValueError, MemoryError) as error:
+            self.report({"ERROR"}, str(error) or "There is not enough memory for the report.")
             return {"CANCELLED"}
         for note in work.notes:
             self.report({"WARNING"}, f"“{work.title}”: {note}")
@@ -203,45 +157,32 @@ def _left_out(material: bpy.types.Material, others: list[str], smooth: bool) -> 
     return notes
 
 
-class _Work(threading.Thread):
-    """The report; it can be made in the operator's own thread or beside Blender's. It touches none of Blender's data."""
+class _Work:
+    """The report in the making; it touches none of Blender's data."""
 
     def __init__(self, settings: OPAL_OT_gem_report, stone: Any, title: str, notes: list[str]) -> None:
-        super().__init__(name="Opal gem report", daemon=True)
         self._stone, self.title, self.notes = stone, title, notes
         self._size, self._passes = settings.size, settings.passes
         self._head = 0.5 * settings.head_angle
         self._tilt, self._tilt_steps = math.degrees(settings.tilt), settings.tilt_steps
-        self.stopping = False
-        self.done = 0.0
         self.result: Any = None
         self.page: Any = None
         self.table = ""
-        self.sentence = ""
 
-    def _part(self, start: float, end: float) -> Any:
-        def told(done: float) -> bool:
-            self.done = start + (end - start) * done
-            return not self.stopping
-
-        return told
-
-    def run(self) -> None:
+    def make(self, told: Callable[[float], bool]) -> None:
+        """Measures and draws; ``told`` hears how much is done, and says whether to go on."""
         import numpy as np
         from opal_kernels import gem_report
-        from opal_kernels.binding import OpalError
 
-        try:
-            tilts = np.linspace(-self._tilt, self._tilt, self._tilt_steps)
-            self.result = gem_report.measure(self._stone, tilts, self._head, progress=self._part(0.0, 0.3))
-            picture = gem_report.face_up(self._stone, self._size, self._passes, self._head, self._part(0.3, 0.65))
-            fire = gem_report.flashes(self._stone, self._size, self._passes, self._head, self._part(0.65, 1.0))
-            self.table = gem_report.table(self.result, self.title, self.notes)
-            self.page = gem_report.draw(self.result, picture, fire, self.title, self.notes)
-        except gem_report.Cancelled:
-            pass
-        except (OpalError, ValueError, MemoryError) as error:
-            self.sentence = str(error) or "There is not enough memory for the report."
+        def part(start: float, end: float) -> Callable[[float], bool]:
+            return lambda done: told(start + (end - start) * done)
+
+        tilts = np.linspace(-self._tilt, self._tilt, self._tilt_steps)
+        self.result = gem_report.measure(self._stone, tilts, self._head, progress=part(0.0, 0.3))
+        picture = gem_report.face_up(self._stone, self._size, self._passes, self._head, part(0.3, 0.65))
+        fire = gem_report.flashes(self._stone, self._size, self._passes, self._head, part(0.65, 1.0))
+        self.table = gem_report.table(self.result, self.title, self.notes)
+        self.page = gem_report.draw(self.result, picture, fire, self.title, self.notes)
 
 
 def register() -> None:

@@ -8,6 +8,21 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 
 from . import layer_names
+from .job import Steps
+from .long_job import LongJob, refusal
+
+
+class RendersFrame(LongJob):
+    """What operators share that render the current frame: one at a time, with the scene changed meanwhile."""
+
+    holds_scene = True
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if bpy.app.is_job_running("RENDER"):
+            cls.poll_message_set(refusal() or "Blender is rendering: wait for its end, or stop it with Esc.")
+            return False
+        return context.scene is not None
 
 
 class WritesFile:
@@ -45,13 +60,13 @@ class WritesFile:
         return f"; written to {path}"
 
 
-class OPAL_OT_render_layers(bpy.types.Operator, WritesFile):
+class OPAL_OT_render_layers(bpy.types.Operator, RendersFrame, WritesFile):
     """Render Opal's layers"""
 
     bl_idname = "opal.render_layers"
     bl_label = "Render Layers"
     bl_description = "Render Opal's layers of this frame into images, to be laid over a picture by another engine"
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"UNDO"}
 
     layers: EnumProperty(
         name="Layers",
@@ -61,11 +76,7 @@ class OPAL_OT_render_layers(bpy.types.Operator, WritesFile):
         default={"CAUSTICS", "GEMS", "MEDIA", "RAINBOW", "TRANSMITTANCE"},
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return context.scene is not None and not bpy.app.is_job_running("RENDER")
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def steps(self, context: bpy.types.Context) -> Steps:
         from opal_kernels.binding import OpalError
 
         from . import float_images, layers, own_images, render_scene
@@ -74,7 +85,7 @@ class OPAL_OT_render_layers(bpy.types.Operator, WritesFile):
             self.report({"ERROR"}, "No layer is chosen.")
             return {"CANCELLED"}
         try:
-            rendered = render_scene.opal(context, layers.passes(self.layers))
+            rendered = yield from render_scene.opal(context, layers.passes(self.layers))
             found = layers.pictures(rendered.films, self.layers, context.scene.render.film_transparent)
             owner = own_images.owner_of(context.scene, context.view_layer)
             for identifier, pixels in found.items():

@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Renders of the current frame by either engine, as Blender renders it, given back as arrays.
+"""Renders of the current frame by either engine, as Blender renders it, given back as arrays: parts of a job (`job`).
 
 Pictures are (height, width, 4) float32, scene-linear, premultiplied, rows from the bottom up.
 """
 
 from __future__ import annotations
 
+import re
+import shutil
 import tempfile
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -47,7 +49,10 @@ class Rendered:
     passes: int = 0
 
 
-def opal(context: Any, passes: Sequence[Any] = ()) -> Rendered:
+Rendering = Generator[Any, Any, Rendered]
+
+
+def opal(context: Any, passes: Sequence[Any] = ()) -> Rendering:
     """Renders the scene's active view layer by Opal; ``passes`` are kept beside Combined.
 
     Raises
@@ -62,8 +67,8 @@ def opal(context: Any, passes: Sequence[Any] = ()) -> Rendered:
     with Changed() as changed, capture.capturing(passes) as captured:
         _only(changed, context)
         changed.set(context.scene.render, engine="OPAL")
-        seconds, memory = _render(context, changed)
-    layer = context.view_layer.name
+        layer = context.view_layer.name
+        seconds, memory = yield BlenderRender(context.scene, "Opal", lambda _words, _seconds: captured.done)
     if captured.failure:
         raise RenderFailed(captured.failure)
     if captured.stopped or layer not in captured.films:
@@ -72,7 +77,7 @@ def opal(context: Any, passes: Sequence[Any] = ()) -> Rendered:
     return Rendered(films[Pass.COMBINED], seconds, memory, films, captured.passes_done[layer])
 
 
-def cycles(context: Any, **settings: Any) -> Rendered:
+def cycles(context: Any, **settings: Any) -> Rendering:
     """Renders the scene's active view layer by Cycles; ``settings`` are set on `scene.cycles` meanwhile.
 
     Raises
@@ -93,18 +98,19 @@ def cycles(context: Any, **settings: Any) -> Rendered:
         folder = Path(tempfile.mkdtemp(prefix="opal-", dir=bpy.app.tempdir or None))
         path = folder / "cycles.exr"
         image_settings = scene.render.image_settings
+        changed.keep(image_settings, "color_depth", "color_mode", "exr_codec")  # they follow the format
         changed.set(image_settings, media_type="IMAGE")
         changed.set(image_settings, file_format="OPEN_EXR")
         changed.set(image_settings, color_mode="RGBA", color_depth="32", exr_codec="ZIP", color_management="FOLLOW_SCENE")
         changed.set(scene.render, filepath=str(path), use_file_extension=False)
         try:
-            seconds, memory = _render(context, changed, write_still=True)
+            limit = settings.get("time_limit", 0.0)
+            seconds, memory = yield BlenderRender(scene, "Cycles", lambda words, now: _cycles_done(words, now, limit), write_still=True)
             if not path.exists():
                 raise RenderFailed("Cycles gave no picture.")
             return Rendered(_read(path), seconds, memory)
         finally:
-            path.unlink(missing_ok=True)
-            folder.rmdir()
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def _only(changed: Changed, context: Any) -> None:
@@ -124,18 +130,95 @@ def _has_gpu(context: Any) -> bool:
         return False
 
 
-def _render(context: Any, changed: Changed, write_still: bool = False) -> tuple[float, int]:
-    meter = _Meter()
-    begun = time.perf_counter()
-    meter.start()
-    try:
-        bpy.ops.render.render(write_still=write_still, scene=context.scene.name)
-    except RuntimeError as error:
-        sentence = str(error).strip().removeprefix("Error: ").splitlines()
-        raise RenderFailed(sentence[0] if sentence else "The render failed.") from None
-    finally:
-        memory = meter.stop()
-    return time.perf_counter() - begun, memory
+def _cycles_done(words: str, seconds: float, limit: float) -> float:
+    """How far Cycles is by what it says, (“… | Sample 3/64”), or by its time."""
+    by_time = min(1.0, seconds / limit) if limit else 0.0
+    found = re.search(r"Sample (\d+)/(\d+)", words)
+    return max(by_time, int(found[1]) / max(1, int(found[2]))) if found else by_time
+
+
+class BlenderRender:
+    """A render by Blender as a step of a job; it gives its seconds and by how many bytes the process grew.
+
+    Parameters
+    ----------
+    scene : bpy.types.Scene
+        Rendered by its own engine.
+    engine : str
+        Its name, for the person.
+    done : callable
+        From the engine's last words and the seconds since the beginning to the part that is done.
+    """
+
+    def __init__(self, scene: Any, engine: str, done: Callable[[str, float], float], write_still: bool = False) -> None:
+        self._scene, self._engine, self._done = scene, engine, done
+        self._arguments = {"write_still": write_still, "scene": scene.name}
+        self._said = ""
+        self._handlers = ((bpy.app.handlers.render_stats, self._on_words), (bpy.app.handlers.render_cancel, self._on_cancel))
+        self.stopped = False
+        self.result: Any = None
+        self.failure: Exception | None = None
+
+    def run(self) -> None:
+        self._start()
+        try:
+            bpy.ops.render.render(**self._arguments)
+        except RuntimeError as error:
+            self._fail(str(error))
+
+    def begin(self) -> None:
+        """Begins the render beside the interface, which Blender locks meanwhile: what the job has changed is not for editing."""
+        self._start()
+        for handlers, function in self._handlers:
+            handlers.append(function)
+        preferences = bpy.context.preferences
+        was_dirty = preferences.is_dirty
+        try:
+            with Changed() as changed:
+                # Both are looked at by the call only.
+                changed.set(preferences.view, render_display_type="NONE")
+                changed.set(self._scene.render, use_lock_interface=True)
+                if "CANCELLED" in bpy.ops.render.render("INVOKE_DEFAULT", **self._arguments):
+                    self._fail("Blender did not start the render: it renders something else.")
+        except RuntimeError as error:
+            self._fail(str(error))
+        finally:
+            preferences.is_dirty = was_dirty
+
+    def runs(self) -> bool:
+        return bpy.app.is_job_running("RENDER")
+
+    def stop(self) -> None:
+        """Blender itself hears Escape wherever a render is; there is no other way to stop one."""
+
+    def end(self) -> None:
+        for handlers, function in self._handlers:
+            if function in handlers:
+                handlers.remove(function)
+        self.result = time.perf_counter() - self._begun, self._meter.stop()
+
+    def _start(self) -> None:
+        self._meter = _Meter()
+        self._begun = time.perf_counter()
+        self._meter.start()
+
+    def _fail(self, text: str) -> None:
+        sentence = text.strip().removeprefix("Error: ").splitlines()
+        self.failure = RenderFailed(sentence[0] if sentence else "The render failed.")
+
+    def _on_words(self, words: Any, *_: Any) -> None:
+        self._said = str(words)
+
+    def _on_cancel(self, *_: Any) -> None:
+        self.stopped = True
+
+    @property
+    def words(self) -> str:
+        return f"{self._engine} | {self._said}" if self._said else self._engine
+
+    @property
+    def done(self) -> float:
+        return self._done(self._said, time.perf_counter() - self._begun)
 
 
 def _read(path: Path) -> np.ndarray:

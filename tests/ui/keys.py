@@ -15,6 +15,7 @@ from pathlib import Path
 import bpy
 
 sys.path.append(str(Path(__file__).resolve().parent))
+import long_jobs  # noqa: E402
 import window as w  # noqa: E402
 
 RESULT = w.RESULT
@@ -143,11 +144,7 @@ def _middle(editor):
 
 def compare():
     """The comparison opens its picture."""
-    scene = bpy.context.scene
-    scene.opal.passes, scene.render.resolution_percentage = 2, 50
-    scene.cycles.device = "CPU"
-    with bpy.context.temp_override(window=w.window(), area=w.area("VIEW_3D")):
-        RESULT["compare"] = sorted(bpy.ops.opal.compare_cycles())
+    yield from long_jobs.run()
     yield 2.0
     shown = [
         (win, a)
@@ -160,6 +157,7 @@ def compare():
     for other in bpy.context.window_manager.windows[1:]:
         with bpy.context.temp_override(window=other):
             bpy.ops.wm.window_close()
+    long_jobs.undo()
     yield 1.0
 
 

@@ -63,8 +63,32 @@ def test_the_rendered_view_follows_a_material_a_deletion_and_an_undo(found):
     assert deleted["spread"] < 0.5 * ruby["spread"] < undone["spread"], (ruby, deleted, undone)
 
 
-def test_the_comparison_opens_its_picture(found):
+@pytest.mark.parametrize("part", ["stopped_opal", "stopped_cycles"])
+def test_escape_stops_comparison_and_composite_in_either_engines_part(found, part):
+    """They tell in the window's foot how far they are, and leave everything as it was."""
+    job = found[part]
+    assert job["begun"] == ["RUNNING_MODAL"] and job["ran"]
+    assert job["foot_changed"] > 0.3 < job["foot_changed_back"], job
+    assert job["view"]["spread"] > 0.02, f"a view that is locked keeps its picture: {job['view']}"
+    assert "is still at work" in job["other"], "no other begins meanwhile"
+    assert job["escape_seconds"] < 3.0, f"Cycles ends with the sample that it is at: {job['escape_seconds']:.2f} s"
+    assert job["changed"] == [] and job["pictures"] == []
+
+
+def test_undo_ends_a_composite_and_what_it_has_changed_is_put_back(found):
+    assert found["undone"] == {"changed": [], "pictures": []}
+
+
+def test_beside_the_interface_the_comparison_makes_the_pictures_that_scripts_get(found):
     assert found["compare"] == ["FINISHED"]
+    finished = found["finished"]
+    assert finished["stepwise"] == finished["pictures"] and len(finished["pictures"]) == 4
+    assert list(finished["apart"].values()) == [0.0] * 4, finished
+    assert finished["changed"] == []
+    assert finished["undone"] == [], "one step of undo takes them away"
+
+
+def test_the_comparison_opens_its_picture(found):
     assert "Opal Side by Side" in found["compare_shown"], found["compare_shown"]
 
 
