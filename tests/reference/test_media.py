@@ -72,12 +72,12 @@ def add_volume(tree, output, *shaders):
     tree.links.new(total, output.inputs["Volume"])
 
 
-def lit_box(material, view=(0, -5, 0.5)):
+def lit_box(material, view=(0, -5, 0.5), radius=0.3, angle=0.1):
     """A cube of the medium on a floor, under a lamp, a sun and a sky."""
     place("floor", square("floor", diffuse("floor", (0.5, 0.5, 0.5)), 4), (0, 0, -1.01))
     place("box", cube("box", material), (0, 0, 0), (0, 0, 0.4), (2, 2, 2))
-    lamp("POINT", (1.6, -1.6, 2.5), energy=300, shadow_soft_size=0.3)
-    lamp("SUN", (0, 0, 5), (0.5, 0.3, 0), energy=2.0, angle=0.1)
+    lamp("POINT", (1.6, -1.6, 2.5), energy=300, shadow_soft_size=radius)
+    lamp("SUN", (0, 0, 5), (0.5, 0.3, 0), energy=2.0, angle=angle)
     world((0.2, 0.25, 0.3))
     camera(view, (1.5, 0, 0), lens=45)
 
@@ -120,8 +120,10 @@ PHASES = {
 @pytest.mark.parametrize("phase", PHASES)
 def test_phase_functions_of_the_scatter_node(opal, render, phase):
     inputs = {"phase": phase, "Color": (0.8, 0.8, 0.8, 1), "Density": 0.8, **PHASES[phase]}
-    lit_box(filled("medium", ("VolumeScatter", inputs)))
-    check(render)
+    # Small lamps through a narrow peak of scattering are noise: a soft one and a wide sun, and more samples, have a third of it.
+    narrow = phase in {"FOURNIER_FORAND", "MIE"}
+    lit_box(filled("medium", ("VolumeScatter", inputs)), **({"radius": 0.8, "angle": 0.6} if narrow else {}))
+    check(render, samples=4 if narrow else 1)
 
 
 def test_camera_inside(opal, render):
@@ -227,7 +229,7 @@ def test_phase_functions_that_change_from_place_to_place(opal, render, tiny):
         tree.links.new(source, target)
     tree.links.new(mix.outputs[0], output.inputs["Volume"])
     lit_box(material)
-    check(render)
+    check(render, samples=4)
 
 
 def test_density_by_a_noise_texture(opal, render, tiny):
@@ -246,4 +248,4 @@ def test_density_by_a_noise_texture(opal, render, tiny):
     tree.links.new(noise.outputs[0], times.inputs[0])
     tree.links.new(times.outputs[0], scatter.inputs["Density"])
     lit_box(material)
-    check(render, mean_tolerance=0.005)
+    check(render, mean_tolerance=0.005, samples=4)
