@@ -24,8 +24,9 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 # One build at a time in one folder, where flock is to be had.
 LOCK := $(shell command -v flock >/dev/null && echo flock build/.lock)
+SANITIZE_LOCK := $(subst .lock,sanitize.lock,$(LOCK))
 
-.PHONY: help environment render test zip bench lint style warnings sanitize dev format clean distclean FORCE
+.PHONY: help environment render test zip bench lint style warnings sanitized sanitize dev format clean distclean FORCE
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -98,9 +99,12 @@ format: | environment
 
 # The sanitizers' runtime has to be in the process before Python's allocator: hence LD_PRELOAD.
 SANITIZER_RUNTIMES = $(shell g++ -print-file-name=libasan.so):$(shell g++ -print-file-name=libubsan.so):$(shell g++ -print-file-name=libstdc++.so)
-sanitize: zip
-	@$(LOCK) sh -ec 'cmake -S kernels -B build/sanitize -G Ninja -DCMAKE_BUILD_TYPE=Debug -DOPAL_LEVELS=v2 -DOPAL_SANITIZE=ON >build/sanitize.log \
+sanitized: | environment
+	@mkdir -p build
+	@$(SANITIZE_LOCK) sh -ec 'cmake -S kernels -B build/sanitize -G Ninja -DCMAKE_BUILD_TYPE=Debug -DOPAL_LEVELS=v2 -DOPAL_SANITIZE=ON >build/sanitize.log \
 	  || { cat build/sanitize.log; exit 1; }; ninja -C build/sanitize -j$(JOBS) --quiet'
+
+sanitize: zip sanitized
 	@LD_PRELOAD=$(SANITIZER_RUNTIMES) OPAL_LIBRARY_DIR=$(abspath build/sanitize) \
 	  ASAN_OPTIONS=detect_leaks=0:halt_on_error=1 UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 \
 	  $(PYTHON) -m pytest $(or $(ARGS),tests/kernels)
