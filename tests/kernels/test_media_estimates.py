@@ -19,17 +19,18 @@ def fill(scene, low, high, medium):
 
 
 def means_of(scene, seeds=(1, 2, 3, 4), passes=4, **settings):
-    """Mean of the picture's channels and its standard error."""
-    found = [picture(scene, passes, seed=seed, max_depth=64, **settings).mean() for seed in seeds]
-    return np.mean(found), np.std(found, ddof=1) / len(seeds) ** 0.5
+    """Means of the picture's channels, (3,), and their standard errors as these few seeds know them."""
+    found = np.array([picture(scene, passes, seed=seed, max_depth=64, **settings).mean(axis=(0, 1)) for seed in seeds])
+    return found.mean(axis=0), found.std(axis=0, ddof=1) / len(seeds) ** 0.5
 
 
-def agrees(name, found, expected, allowed, largest_error):
+def agrees(name, found, expected, tolerance=0.01):
+    """Each channel within `tolerance`, noise included. Tests say how large a standard error is; the few seeds of a test, which know it to
+    a factor of two, are to find no more than half of the tolerance."""
     error = np.hypot(found[1], expected[1]) / expected[0]
-    assert error < largest_error, f"{name}: too noisy to tell, {error:.4f}"
-    # Four seeds know their spread badly: what is required of it bounds it from below.
+    assert error.max() < 0.5 * tolerance, f"{name}: too noisy to tell, {error}"
     ratio = found[0] / expected[0] - 1
-    assert abs(ratio) < allowed + 4 * max(error, largest_error / 3), f"{name}: {ratio:+.4f}, error {error:.4f}"
+    assert np.abs(ratio).max() < tolerance, f"{name}: {ratio}, error {error}"
 
 
 @pytest.mark.parametrize("slant", [False, True])
@@ -37,7 +38,8 @@ def test_estimates_agree_with_each_other_and_with_paths(slant):
     """The inside of a box of fog under the sun, seen head on and at an angle of 37° to its faces.
 
     A kernel of 0.1 m reaches out of a box of 2 m for a twentieth of the way at either end; spheres that did not know would bring 3.5 %
-    less. Half a per cent is left to blur."""
+    less. Within 1 %: of that the blur of beams takes 0.7 % where many of a box's edges are seen, with half of that radius; standard
+    errors of the ratios are 0.2 to 0.3 %, of 16 seeds."""
     camera = np.eye(4)
     if slant:
         camera[:3, :3] = TURNED
@@ -45,14 +47,18 @@ def test_estimates_agree_with_each_other_and_with_paths(slant):
     with Scene(threads=2) as scene:
         fill(scene, (-1, -1, -1), (1, 1, 1), scene.add_medium(1.0, 0.8, Phase(PhaseKind.HENYEY_GREENSTEIN, 0.3)))
         scene.add_light(Light(type=LightType.SUN, power=1.0, transform=TILTED))
-        scene.set_camera(**orthographic(0.45, camera[:3]))
+        # Nearly the whole box, so that few photons are in vain; but none of the sides that the rays go along.
+        width, height = (1.2 if slant else 0.8), 0.8
+        scene.set_camera(**{**orthographic(1.0, camera[:3]), "window": (-width, width, -height, height)})
         scene.commit()
         expected = means_of(scene, samples_per_pass=64, photons_per_pass=0)
         for carry in (Carry.INDIRECT, Carry.ALL):
             for estimate in VolumeEstimate:
-                settings = {"photons_carry": carry, "volume_estimate": estimate, "volume_radius": 0.1, "gather": 256, "march_steps": 4}
-                found = means_of(scene, samples_per_pass=4, photons_per_pass=30_000, **settings)
-                agrees(f"{carry.name} {estimate.name}", found, expected, 0.005, 0.009)
+                radius = 0.05 if estimate == VolumeEstimate.BEAMS else 0.1
+                settings = {"photons_carry": carry, "volume_estimate": estimate, "volume_radius": radius, "gather": 256, "march_steps": 4}
+                photons = 60_000 if estimate == VolumeEstimate.POINTS else 30_000
+                found = means_of(scene, samples_per_pass=8, photons_per_pass=photons, **settings)
+                agrees(f"{carry.name} {estimate.name}", found, expected)
 
 
 def test_the_blur_of_edges_goes_with_the_radius():
@@ -71,7 +77,8 @@ def test_the_blur_of_edges_goes_with_the_radius():
 
 @pytest.mark.parametrize("carry", [Carry.INDIRECT, Carry.ALL])
 def test_a_lamp_whose_sphere_lies_in_the_medium_shines_inwards_too(carry):
-    """A sphere of 0.2 m in fog: photons that only left it outwards would miss the light that paths find inside of it."""
+    """A sphere of 0.2 m in fog: photons that only left it outwards would miss the light that paths find inside of it.
+    Within 1.5 %: the eight seeds' own spread puts the standard error at 0.55 %."""
     with Scene(threads=2) as scene:
         fill(scene, (-1, -1, -1), (1, 1, 1), scene.add_medium(0.5, 0.8))
         scene.add_light(Light(type=LightType.POINT, power=60.0, radius=0.2, soft_falloff=0, transform=placed()[:3]))
@@ -79,8 +86,8 @@ def test_a_lamp_whose_sphere_lies_in_the_medium_shines_inwards_too(carry):
         scene.commit()
         expected = means_of(scene, samples_per_pass=64, photons_per_pass=0)
         settings = {"photons_carry": carry, "volume_estimate": VolumeEstimate.BEAM_RADIANCE, "volume_radius": 0.03}
-        found = means_of(scene, samples_per_pass=8, photons_per_pass=40_000, **settings)
-    agrees(carry.name, found, expected, 0.01, 0.012)
+        found = means_of(scene, range(1, 9), samples_per_pass=32, photons_per_pass=40_000, **settings)
+    agrees(carry.name, found, expected, 0.015)
 
 
 def fog_between_walls(scene):
@@ -98,7 +105,7 @@ def cloud_beside_a_mirror(scene):
     fill(scene, (-0.9, -0.9, -0.9), (0.9, 0.9, 0.9), cloud)
     mirror = scene.add_material(programs.mirror((0.9, 0.9, 0.9)), flags=MaterialFlag.CASTER)
     scene.add_instances(scene.add_mesh(*box((1.2, -1, -1), (1.3, 1, 1))), IDENTITY, [mirror])
-    scene.add_light(Light(type=LightType.RECTANGLE, power=20.0, size_u=1.2, size_v=1.2, transform=looking_down(2.5)))
+    scene.add_light(Light(type=LightType.RECTANGLE, power=20.0, size_u=3.0, size_v=3.0, transform=looking_down(2.5)))
 
 
 def coloured_fog_round_glass(scene):
@@ -113,19 +120,23 @@ def coloured_fog_round_glass(scene):
     scene.add_light(Light(type=LightType.POINT, power=60.0, radius=0.6, transform=placed(2.6, 0.3, 1.0)[:3]))
 
 
-@pytest.mark.parametrize("build", [fog_between_walls, cloud_beside_a_mirror, coloured_fog_round_glass])
-def test_what_photons_carry_does_not_change_media(build):
-    """CAUSTICS, INDIRECT and ALL beside paths alone: within 1 % and their noise."""
+@pytest.mark.parametrize(
+    "build, samples, tolerance",
+    [(fog_between_walls, 64, 0.01), (cloud_beside_a_mirror, 256, 0.015), (coloured_fog_round_glass, 256, 0.015)],
+)
+def test_what_photons_carry_does_not_change_media(build, samples, tolerance):
+    """CAUSTICS, INDIRECT and ALL beside paths alone: each channel within 1 %, which is five standard errors of the fog between walls, and
+    within 1.5 % where mirrors and glass are, which is three: a third of that would take ten times as long."""
     with Scene(threads=2) as scene:
         build(scene)
         scene.set_camera(**orthographic(1.1, looking_down(2.2)))
         scene.commit()
-        expected = means_of(scene, samples_per_pass=64, photons_per_pass=0)
+        expected = means_of(scene, samples_per_pass=samples, photons_per_pass=0)
         for carry in (Carry.CAUSTICS, Carry.INDIRECT, Carry.ALL):
             settings = {"photons_carry": carry, "volume_radius": 0.04, "radius": 0.04}
-            samples = 32 if carry == Carry.CAUSTICS else 2  # paths bring direct light then
-            found = means_of(scene, samples_per_pass=samples, photons_per_pass=40_000, **settings)
-            agrees(carry.name, found, expected, 0.01, 0.016)
+            own = max(32, samples // 4) if carry == Carry.CAUSTICS else samples // 16  # paths bring the direct light of CAUSTICS
+            found = means_of(scene, samples_per_pass=own, photons_per_pass=40_000, **settings)
+            agrees(carry.name, found, expected, tolerance)
 
 
 @pytest.mark.parametrize("estimate", [VolumeEstimate.POINTS, VolumeEstimate.BEAMS])
@@ -135,24 +146,24 @@ def test_photons_of_media_have_a_count_of_their_own(estimate):
         fill(scene, (-1, -1, -1), (1, 1, 1), scene.add_medium(1.0, 0.8))
         scene.add_instances(scene.add_mesh(*square(1.5, -1.2)), IDENTITY, [scene.add_material(programs.diffuse((0.7, 0.7, 0.7)))])
         scene.add_light(Light(type=LightType.SUN, power=1.0, transform=TILTED))
-        scene.set_camera(**orthographic(0.45, looking_down(10.0)))
+        scene.set_camera(**orthographic(0.8, looking_down(10.0)))
         scene.commit()
         settings = {"photons_carry": Carry.ALL, "volume_estimate": estimate, "volume_radius": 0.1, "radius": 0.1, "gather": 256}
         found, counts = {}, {}
         for apart in (0, 80_000):
             means = []
-            for seed in range(4):
+            for seed in range(8):
                 with Render(
-                    scene, width=16, height=16, samples_per_pass=4, photons_per_pass=20_000, volume_photons=apart, seed=seed, **settings
+                    scene, width=16, height=16, samples_per_pass=16, photons_per_pass=20_000, volume_photons=apart, seed=seed, **settings
                 ) as render:
-                    means.append(render.run(1).film()[..., :3].mean())
+                    means.append(render.run(1).film()[..., :3].mean(axis=(0, 1), dtype=float))
                     counts[apart] = render.statistics
-            found[apart] = np.mean(means), np.std(means, ddof=1) / 2
+            found[apart] = np.mean(means, axis=0), np.std(means, axis=0, ddof=1) / 8**0.5
     together, apart = counts[0], counts[80_000]
     assert (together["volume_photons_emitted"], apart["volume_photons_emitted"]) == (20_000, 80_000)
     assert apart["photons_emitted"] == together["photons_emitted"] and apart["photons_stored"] == together["photons_stored"]
     assert apart["volume_photons_stored"] == pytest.approx(4 * together["volume_photons_stored"], rel=0.03)
-    agrees("apart", found[80_000], found[0], 0.0, 0.012)
+    agrees("apart", found[80_000], found[0], 0.015)  # of which the eight seeds' standard error is 0.5 %
 
 
 @pytest.mark.parametrize("tolerance", [0.1, 0.5])

@@ -229,7 +229,7 @@ def test_phase_functions_that_change_from_place_to_place(opal, render, tiny):
         tree.links.new(source, target)
     tree.links.new(mix.outputs[0], output.inputs["Volume"])
     lit_box(material)
-    check(render, samples=4)
+    check(render, samples=3)
 
 
 def test_density_by_a_noise_texture(opal, render, tiny):
@@ -248,4 +248,4 @@ def test_density_by_a_noise_texture(opal, render, tiny):
     tree.links.new(noise.outputs[0], times.inputs[0])
     tree.links.new(times.outputs[0], scatter.inputs["Density"])
     lit_box(material)
-    check(render, mean_tolerance=0.005, samples=4)
+    check(render, mean_tolerance=0.005, samples=3)
