@@ -98,17 +98,19 @@ def loaded_pixels(image: Any) -> np.ndarray | None:
 
 
 def tile_pixels(image: Any, position: int, number: int) -> np.ndarray | None:
-    """One tile of a tiled image, read from its file or from what is packed; shape and type as `loaded_pixels`."""
+    """One tile of a tiled image, read from its file or from what is packed; shape, type and meaning as of `loaded_pixels`."""
     if image.packed_files:
         data = image.packed_files[position].packed_file.data if position < len(image.packed_files) else b""
         with _as_file(bytes(data)) as path:
-            return _file_pixels(path)
-    import bpy
+            pixels = _file_pixels(path)
+    else:
+        import bpy
 
-    u, v = (number - 1001) % 10, (number - 1001) // 10
-    path = bpy.path.abspath(image.filepath_raw, library=image.library)
-    path = path.replace("<UDIM>", str(number)).replace("<UVTILE>", f"u{u + 1}_v{v + 1}")
-    return _file_pixels(path) if os.path.isfile(path) else None
+        u, v = (number - 1001) % 10, (number - 1001) // 10
+        path = bpy.path.abspath(image.filepath_raw, library=image.library)
+        path = path.replace("<UDIM>", str(number)).replace("<UVTILE>", f"u{u + 1}_v{v + 1}")
+        pixels = _file_pixels(path) if os.path.isfile(path) else None
+    return None if pixels is None else _as_loaded(pixels, image)
 
 
 @contextmanager
@@ -123,12 +125,15 @@ def _as_file(data: bytes):
 
 
 def _file_pixels(path: str) -> np.ndarray | None:
+    """What a file holds, alpha and encoding as they are stored; uint8, or float32 for anything finer."""
     import bpy
 
     bpy.utils.expose_bundled_modules()
     import OpenImageIO as oiio
 
-    source = oiio.ImageInput.open(path)
+    as_stored = oiio.ImageSpec()
+    as_stored.attribute("oiio:UnassociatedAlpha", 1)  # OpenImageIO multiplies alpha in by itself otherwise
+    source = oiio.ImageInput.open(path, as_stored)
     if source is None:
         return None
     is_bytes = source.spec().format == oiio.UINT8
@@ -142,6 +147,45 @@ def _file_pixels(path: str) -> np.ndarray | None:
     if pixels.shape[2] == 2:  # grey and alpha
         pixels = pixels[:, :, [0, 0, 0, 1]]
     return np.ascontiguousarray(pixels[::-1, :, :4])
+
+
+def _as_loaded(pixels: np.ndarray, image: Any) -> np.ndarray:
+    """A file's pixels as Blender holds them: bytes with alpha apart, floats scene linear with alpha multiplied in.
+
+    As in Blender, the image's alpha mode says how the file has it.
+    """
+    space, is_data = image.colorspace_settings.name, image.colorspace_settings.is_data
+    is_multiplied = image.alpha_mode == "PREMUL"
+    has_alpha = pixels.shape[2] == 4 and not is_data and image.alpha_mode not in ("CHANNEL_PACKED", "NONE")
+    if pixels.dtype == np.uint8:
+        return np.rint(_divided(pixels / np.float32(255)).clip(0, 1) * 255).astype(np.uint8) if has_alpha and is_multiplied else pixels
+    if is_data or (space in _LINEAR and (is_multiplied or not has_alpha)):
+        return pixels
+    if has_alpha and is_multiplied:
+        pixels = _divided(pixels)
+    pixels = _linear(pixels, space)
+    return _premultiplied(pixels) if has_alpha else pixels
+
+
+def _linear(pixels: np.ndarray, space: str) -> np.ndarray:
+    """Float colours of a named space as scene linear."""
+    if space in _LINEAR:
+        return pixels
+    if space in _SRGB:
+        colors = pixels[:, :, :3]
+        decoded = np.where(colors <= 0.04045, colors / 12.92, ((np.maximum(colors, 0) + 0.055) / 1.055) ** 2.4)  # IEC 61966-2-1
+        return np.concatenate([decoded, pixels[:, :, 3:]], axis=2).astype(np.float32)
+    converted = _converted(pixels, space)
+    if converted is None:
+        raise RuntimeError(f"the colour space {space} is not known here")
+    return converted
+
+
+def _divided(pixels: np.ndarray) -> np.ndarray:
+    """Float colours that alpha was multiplied into, without it."""
+    alpha = pixels[:, :, 3:]
+    colors = np.divide(pixels[:, :, :3], alpha, out=pixels[:, :, :3].copy(), where=alpha > 0)
+    return np.concatenate([colors, alpha], axis=2)
 
 
 def prepared(pixels: np.ndarray, image: Any) -> tuple[np.ndarray, int, str]:
@@ -199,7 +243,7 @@ def _premultiplied(pixels: np.ndarray) -> np.ndarray:
 
 
 def _converted(pixels: np.ndarray, space: str) -> np.ndarray | None:
-    """8-bit colours of a named space as scene linear float32, by OpenColorIO; None where that is not possible."""
+    """Colours of a named space, uint8 or float32, as scene linear float32, by OpenColorIO; None where that is not possible."""
     try:
         import bpy
 
@@ -210,8 +254,10 @@ def _converted(pixels: np.ndarray, space: str) -> np.ndarray | None:
         processor = ocio.Config.CreateFromFile(path).getProcessor(space, "scene_linear").getDefaultCPUProcessor()
     except (ImportError, AttributeError, Exception):  # OpenColorIO raises its own kind
         return None
-    colors = np.ascontiguousarray(pixels[:, :, :3] if pixels.shape[2] > 1 else pixels.repeat(3, axis=2)).astype(np.float32) / 255
+    if pixels.dtype == np.uint8:
+        pixels = pixels.astype(np.float32) / 255
+    colors = np.array(pixels[:, :, :3] if pixels.shape[2] > 1 else pixels.repeat(3, axis=2), np.float32, order="C")
     processor.applyRGB(colors)
     if pixels.shape[2] == 4:
-        colors = np.concatenate([colors, pixels[:, :, 3:].astype(np.float32) / 255], axis=2)
+        colors = np.concatenate([colors, pixels[:, :, 3:]], axis=2)
     return colors
