@@ -56,8 +56,14 @@ def migrate() -> str:
 
 
 def _used(scenes: list[Any]) -> bool:
-    """Whether the file has anything of Opal's in it."""
-    return any(scene.render.engine == "OPAL" for scene in scenes) or any(m.opal.kind != "SURFACE" for m in bpy.data.materials)
+    """Whether the file has anything of Opal's in it: a file of other engines is none of Opal's business, and stays without its mark."""
+    return (
+        any(scene.render.engine == "OPAL" for scene in scenes)
+        or any(material.opal.kind != "SURFACE" for material in bpy.data.materials)
+        or any(world.opal.kind != "NONE" for world in bpy.data.worlds)
+        or any(light.opal.spectrum != "COLOR" for light in bpy.data.lights)
+        or any(camera.opal.polarizer for camera in bpy.data.cameras)
+    )
 
 
 @persistent
@@ -70,8 +76,11 @@ def _on_load(_path: str = "", _other: Any = None) -> None:
 
 @persistent
 def _on_save(_path: str = "", _other: Any = None) -> None:
-    for scene in bpy.data.scenes:
-        if scene.library is None and scene.get(KEY, 0) < current():
+    scenes = [scene for scene in bpy.data.scenes if scene.library is None]
+    if not _used(scenes):
+        return
+    for scene in scenes:
+        if scene.get(KEY, 0) < current():
             scene[KEY] = current()
 
 

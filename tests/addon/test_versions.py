@@ -21,6 +21,18 @@ def test_a_saved_file_says_its_layout(tmp_path):
     assert bpy.context.scene["opal_layout"] == stage.addon("versions").current()
 
 
+def test_a_file_without_anything_of_opal_is_left_without_its_mark(tmp_path):
+    """The mark is a custom property that whoever opens the scene's panel sees."""
+    stage.scene().render.engine = "CYCLES"
+    bpy.data.lights.new("Lamp", "POINT")
+    saved_and_opened(tmp_path / "other.blend")
+    assert "opal_layout" not in bpy.context.scene
+    lamp = bpy.data.lights.new("Lamp", "POINT")
+    lamp.use_fake_user, lamp.opal.spectrum = True, "SODIUM"
+    saved_and_opened(tmp_path / "lamp.blend")
+    assert bpy.context.scene["opal_layout"] == stage.addon("versions").current()
+
+
 def test_a_file_from_before_twins_gets_them(tmp_path):
     stage.scene()
     stone = bpy.data.materials.new("Stone")
