@@ -220,6 +220,23 @@ class OPAL_VIEWLAYER_PT_passes(OpalPanel):
         column.prop(layer.opal, "use_pass_medium")
 
 
+class OPAL_VIEWLAYER_PT_filter(OpalPanel):
+    """What Opal reads of the filter that Blender's own engines show; of theirs not all is read."""
+
+    bl_label = "Filter"
+    bl_context = "view_layer"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Any) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        column = layout.column(heading="Include")
+        column.prop(context.view_layer, "use_sky", text="Environment")
+        column.prop(context.view_layer, "use_solid", text="Surfaces")
+        column.prop(context.view_layer, "use_volumes", text="Volumes")
+
+
 class OPAL_LIGHT_PT_spread(OpalPanel):
     bl_label = "Beam Shape"
     bl_context = "data"
@@ -285,6 +302,7 @@ CLASSES = (
     OPAL_RENDER_PT_motion_blur,
     OPAL_RENDER_PT_performance,
     OPAL_VIEWLAYER_PT_passes,
+    OPAL_VIEWLAYER_PT_filter,
     OPAL_LIGHT_PT_spread,
     OPAL_LIGHT_PT_nodes,
     OPAL_OBJECT_PT_ray_visibility,

@@ -131,6 +131,8 @@ def camera_from_object(
     """
     matrix = camera_object.matrix_world if matrix is None else matrix
     window, fields = _lens(camera_object, scene, matrix, report)
+    if scene.render.use_multiview:
+        report(Named(camera_object), "Opal renders no stereo: every view shows the same picture", "Stereoscopy")
     _refuse_what_is_not_finite(camera_object, (matrix, *matrix_ends), fields)
     aspect = (scene.render.pixel_aspect_x, scene.render.pixel_aspect_y)
     start, end = map(optics.rigid, matrix_ends) if matrix_ends else (None, None)

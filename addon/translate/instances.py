@@ -51,6 +51,8 @@ class Group:
         (count, 8) float32 as in `opal_instances_desc`.
     density : float
         What the coefficients of a volume are multiplied by.
+    blurs : (bool, bool)
+        Whether motion blur shows where they move, and where they are bent.
     motion : list of ndarray
         `transforms` at shutter open and close, where they were read.
     """
@@ -66,6 +68,7 @@ class Group:
     object_info: np.ndarray
     grids: Any = None
     density: float = 1.0
+    blurs: tuple[bool, bool] = (True, True)
     motion: list[np.ndarray] = field(default_factory=list)
 
 
@@ -75,6 +78,7 @@ class Visible:
 
     groups: list[Group] = field(default_factory=list)
     problems: list[tuple[str, str]] = field(default_factory=list)  # object name, sentence
+    changes: list[tuple[str, str]] = field(default_factory=list)  # the same of what is shown in another way
 
 
 @dataclass
@@ -93,6 +97,7 @@ class _Look:
     random: float
     grids: Any = None
     thins_with_scale: bool = False
+    blurs: tuple[bool, bool] = (True, True)
 
 
 def collect(
@@ -123,7 +128,9 @@ def collect(
     usable = np.isfinite(matrices).all(axis=(1, 2))
     usable[usable] = np.abs(np.linalg.det(matrices[usable, :3, :3].astype(np.float64))) > _SMALLEST_VOLUME
 
-    context = _LayerContext(depsgraph, visible.problems)
+    context = _LayerContext(depsgraph, visible)
+    shown = context.kinds()
+    edited = _EditedMeshes()
     looks: list[_Look | None] = []
     look_of: dict[tuple, int] = {}
     look_rows = np.full(len(matrices), -1, np.int32)
@@ -139,10 +146,12 @@ def collect(
         if kind not in {"MESH", "VOLUME"}:
             _note_unreadable(obj, kind, visible.problems)
             continue
+        if kind not in shown:
+            continue
         is_copy = instance.is_instance
         source = instance.instance_object if is_copy else obj
         parent = instance.parent if is_copy else None
-        mesh = obj.to_mesh() if kind == "MESH" and obj.mode == "EDIT" and not is_copy else obj.data
+        mesh = edited.of(source, obj.data) if kind == "MESH" else obj.data
         identity = (
             source.as_pointer() if source is not None else 0,
             mesh.as_pointer(),
@@ -168,13 +177,36 @@ def read_matrices(depsgraph: Any) -> np.ndarray:
     return flat.reshape(-1, 4, 4).transpose(0, 2, 1)  # Blender stores columns
 
 
-class _LayerContext:
-    """The view layer's say in what an object looks like."""
+class _EditedMeshes:
+    """Meshes in edit mode, whose arrays are empty: a copy of each with the edits so far.
 
-    def __init__(self, depsgraph: Any, problems: list[tuple[str, str]]) -> None:
-        self.problems = problems
-        self.layer = depsgraph.view_layer
-        self.override = depsgraph.view_layer_eval.material_override
+    An object keeps one such copy, and asked again throws it away: so each is asked once.
+    """
+
+    def __init__(self) -> None:
+        self._copies: dict[int, Any] = {}
+
+    def of(self, source: Any, mesh: Any) -> Any:
+        """The mesh itself, or its copy where it is in edit mode, be it through another object that shares it."""
+        if source is None or not mesh.is_editmode:
+            return mesh
+        key = source.as_pointer()
+        if key not in self._copies:
+            self._copies[key] = source.to_mesh()
+        return self._copies[key]
+
+
+class _LayerContext:
+    """The view layer's say in what is seen and what an object looks like."""
+
+    def __init__(self, depsgraph: Any, visible: Visible) -> None:
+        self.problems, self.changes = visible.problems, visible.changes
+        self.layer, self.layer_eval = depsgraph.view_layer, depsgraph.view_layer_eval
+        self.override = self.layer_eval.material_override
+
+    def kinds(self) -> set[str]:
+        """The kinds of object that the layer's filter lets through."""
+        return {kind for kind, on in (("MESH", self.layer_eval.use_solid), ("VOLUME", self.layer_eval.use_volumes)) if on}
 
     def look(self, instance: Any, obj: Any, source: Any, parent: Any, mesh: Any, receiver_set: Callable[[Any], int]) -> _Look:
         visibility = _ray_visibility(obj)
@@ -182,13 +214,15 @@ class _LayerContext:
             visibility &= _ray_visibility(parent)
         original = (source if source is not None else obj).original
         holdout = obj.is_holdout or original.holdout_get(view_layer=self.layer)
-        if original.indirect_only_get(view_layer=self.layer):
+        if not holdout and original.indirect_only_get(view_layer=self.layer):  # a holdout stays a hole, as in Cycles
             visibility &= ~SEEN_BY_CAMERA
         materials = self._materials(obj, source, mesh)
         if not instance.is_instance and not instance.show_self:
             visibility = 0
+        self._note_what_is_not_kept(obj, original)
         receivers = receiver_set(parent.original if parent is not None else original)
         grids = source_of(obj, lambda sentence: self.problems.append((Named(original), sentence)))
+        blurs = tuple(map(min, _blurs(obj), _blurs(parent))) if parent is not None else _blurs(obj)
         key = (
             mesh.as_pointer(),
             tuple(m.as_pointer() if m else 0 for m in materials),
@@ -196,6 +230,7 @@ class _LayerContext:
             holdout,
             receivers,
             grids.key if grids is not None else 0,
+            blurs,
         )
         return _Look(
             key=key,
@@ -210,7 +245,15 @@ class _LayerContext:
             random=object_random(original.name),
             grids=grids,
             thins_with_scale=obj.type == "VOLUME" and mesh.render.space == "OBJECT",
+            blurs=blurs,
         )
+
+    def _note_what_is_not_kept(self, obj: Any, original: Any) -> None:
+        if obj.is_shadow_catcher:
+            self.changes.append((Named(original), "Opal has no shadow catchers: it is rendered as any other object"))
+        hair = (m.particle_system.settings for m in obj.modifiers if m.type == "PARTICLE_SYSTEM" and m.show_render)
+        if any(settings.type == "HAIR" and settings.render_type == "PATH" for settings in hair):
+            self.problems.append((Named(original), "hair of particles is not rendered"))
 
     def _materials(self, obj: Any, source: Any, mesh: Any) -> tuple[Any, ...]:
         slots = tuple(slot.material for slot in obj.material_slots)
@@ -225,6 +268,13 @@ class _LayerContext:
 
 def _ray_visibility(obj: Any) -> int:
     return sum(bit for name, bit in _VISIBILITY if getattr(obj, name))
+
+
+def _blurs(obj: Any) -> tuple[bool, bool]:
+    """Whether an object is blurred where it moves, and where it is bent: Cycles' settings, where Cycles is enabled."""
+    settings = getattr(obj, "cycles", None)
+    moves = getattr(settings, "use_motion_blur", True)
+    return moves, moves and getattr(settings, "use_deform_motion", True)
 
 
 _UNREADABLE = {
@@ -288,6 +338,7 @@ def _group(
                     object_info=info[alike],
                     grids=look.grids,
                     density=float(density),
+                    blurs=look.blurs,
                 )
             )
 

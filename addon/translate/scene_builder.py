@@ -136,6 +136,8 @@ class SceneBuilder:
 
         for name, sentence in visible.problems:  # grids have been read by now
             self._report.add(name, sentence, lost=True)
+        for name, sentence in visible.changes:
+            self._report.add(name, sentence)
         return visible
 
     def before_change(self, call: Callable[[], None]) -> None:
@@ -236,9 +238,10 @@ class SceneBuilder:
             if then is None or not np.array_equal(then.rows, group.rows):
                 group.motion.append(group.transforms)
                 continue
-            group.motion.append(then.transforms)
+            moves, bends = group.blurs
+            group.motion.append(then.transforms if moves else group.transforms)
             arrays = snapshot.meshes[key]
-            if arrays is None or key in deformed or not hasattr(then.mesh, "vertices"):
+            if arrays is None or not bends or key in deformed or not hasattr(then.mesh, "vertices"):
                 continue
             positions = read_positions(then.mesh)
             if positions.shape == arrays.positions.shape and not np.array_equal(positions, arrays.positions):
@@ -319,7 +322,9 @@ class SceneBuilder:
 
 
 def world_of(depsgraph: Any) -> Any:
-    """The evaluated world that a view layer shows, or None."""
+    """The evaluated world that a view layer shows, or None where it has none or the layer's filter leaves it out."""
+    if not depsgraph.view_layer_eval.use_sky:
+        return None
     override = getattr(depsgraph.view_layer_eval, "world_override", None)  # since Blender 5
     return override or depsgraph.scene_eval.world
 

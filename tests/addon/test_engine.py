@@ -97,6 +97,22 @@ def test_motion_blur_smears_a_moving_object_along_its_path(tmp_path):
     assert scene.frame_current == 1
 
 
+def test_an_object_whose_motion_blur_is_off_stays_sharp(tmp_path):
+    scene = stage.scene(width=32, height=8, passes=4, samples=16)
+    stage.camera((0, 0, 5), type="ORTHO", ortho_scale=8)
+    card = stage.plane(size=1, material=stage.glowing())
+    if not hasattr(card, "cycles"):
+        pytest.skip("Cycles, whose setting it is, is not enabled")
+    for frame, x in ((0, -2), (2, 2)):
+        card.location.x = x
+        card.keyframe_insert("location", frame=frame)
+    scene.frame_set(1)
+    sharp = stage.render(tmp_path)[4, :, 1]
+    scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1.0
+    card.cycles.use_motion_blur = False
+    assert stage.render(tmp_path)[4, :, 1] == pytest.approx(sharp, abs=0.05)
+
+
 def test_a_spectral_file_holds_the_light_of_a_white_world(tmp_path):
     scene = stage.scene(width=8, height=8, passes=16, samples=16)
     stage.camera()
@@ -207,6 +223,24 @@ def test_what_cannot_be_read_is_named_in_the_report(tmp_path):
     stage.plane("Card", size=20, material=stage.node_material("Toon one", "BsdfToon"))
     stage.render(tmp_path)
     assert any("Toon one" in entry for entry in stage.problems()), stage.problems()
+
+
+def test_shadow_catchers_hair_of_particles_and_stereo_are_named_in_the_report(tmp_path):
+    scene = stage.scene()
+    stage.camera((0, 0, 5))
+    stage.plane("Floor", size=20).is_shadow_catcher = True
+    head = stage.plane("Head")
+    head.modifiers.new("Hair", "PARTICLE_SYSTEM")
+    head.particle_systems[0].settings.type = "HAIR"
+    scene.render.use_multiview = True
+    try:
+        bpy.ops.render.render()
+    finally:
+        scene.render.use_multiview = False
+    for words in ("Floor: Opal has no shadow catchers", "Head: hair of particles", "Camera: Stereoscopy: Opal renders no stereo"):
+        assert any(words in entry for entry in stage.problems()), stage.problems()
+    lost = {entry.owner: entry.lost for entry in stage.addon("report").of(scene).entries}
+    assert lost == {"Floor": False, "Head": True, "Camera": False}
 
 
 @pytest.mark.parametrize("kind", ["BsdfPrincipled", "BsdfGlass", "BsdfMetallic"])

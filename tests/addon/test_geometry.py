@@ -203,6 +203,71 @@ def test_hidden_objects_and_collections_are_not_rendered(tmp_path):
     assert coverage(tmp_path) == 0
 
 
+def left_in_edit_mode(obj, factor):
+    """Enters edit mode and scales the mesh there, without leaving."""
+    import bmesh
+
+    bpy.context.view_layer.objects.active = obj
+    obj.select_set(True)
+    bpy.ops.object.mode_set(mode="EDIT")
+    edited = bmesh.from_edit_mesh(obj.data)
+    for vertex in edited.verts:
+        vertex.co *= factor
+    bmesh.update_edit_mesh(obj.data)
+
+
+def test_a_mesh_in_edit_mode_is_rendered_as_edited_and_so_are_all_that_share_it(tmp_path):
+    """Objects that share it and instances of it were left out: only who was edited had a mesh."""
+    stage.scene(width=36, height=12)
+    stage.camera((0, 0, 5), type="ORTHO", ortho_scale=6)
+    card = stage.plane(size=4, location=(-2, 0, 0))
+    stage.link("Sharing", card.data)
+    copied = bpy.data.collections.new("Copied")
+    copied.objects.link(card)
+    copies = stage.link("Copies", None, (4, 0, 0))
+    copies.instance_type, copies.instance_collection = "COLLECTION", copied
+    left_in_edit_mode(card, 0.25)
+    try:
+        assert len({group.mesh.as_pointer() for group in collected().groups}) == 2, "one copy of the mesh an object"
+        assert coverage(tmp_path) == pytest.approx(3 / 12, abs=0.02)  # three cards of 1 m in a picture of 6 by 2 m
+    finally:
+        bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_a_holdout_stays_a_hole_where_its_collection_is_also_indirect_only(tmp_path):
+    scene = stage.scene()
+    stage.camera((0, 0, 5))
+    stage.world()
+    card = stage.plane(size=20)
+    collection = bpy.data.collections.new("Hole")
+    scene.collection.children.link(collection)
+    scene.collection.objects.unlink(card)
+    collection.objects.link(card)
+    layer = bpy.context.view_layer.layer_collection.children["Hole"]
+    layer.indirect_only = True
+    assert stage.render(tmp_path)[..., 3].mean() == pytest.approx(1.0), "only the sky is seen"
+    layer.holdout = True
+    assert stage.render(tmp_path)[..., 3].max() == 0
+
+
+@pytest.mark.parametrize("left_out, expected", [(None, 0.25), ("use_sky", 0.0), ("use_solid", 1.0)])
+def test_the_view_layer_s_filter_leaves_out_what_it_says(left_out, expected, tmp_path):
+    stage.scene(samples=16)
+    stage.camera((0, 0, 5))
+    stage.world()
+    stage.plane(size=40, material=stage.matte(color=(0.25,) * 3))
+    if left_out:
+        setattr(bpy.context.view_layer, left_out, False)
+    assert stage.render(tmp_path)[..., :3].mean() == pytest.approx(expected, abs=0.01)
+
+
+def test_the_view_layer_s_filter_leaves_out_volumes_alone():
+    stage.plane()
+    stage.link("Cloud", bpy.data.volumes.new("Cloud"))
+    bpy.context.view_layer.use_volumes = False
+    assert [str(group.name) for group in collected().groups] == ["Plane"]
+
+
 @pytest.mark.parametrize("ray", ["camera", "diffuse", "shadow"])
 def test_ray_visibility_hides_an_object_from_that_kind_of_ray_alone(ray, tmp_path):
     stage.scene(passes=8, samples=8)
