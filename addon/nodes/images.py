@@ -50,6 +50,9 @@ class Images:
 
     def tiles(self, image: Any) -> list[tuple[int, int]]:
         """(UDIM number, kernel number) of the tiles that can be read."""
+        if image.is_dirty:
+            sentence = "Tiles that were painted and not saved since show what their files hold: save the image."
+            self._note(Problem(Named(image), "", sentence))
         found = []
         for position, tile in enumerate(image.tiles):
             key = (key_of(image), tile.number)

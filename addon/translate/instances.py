@@ -213,8 +213,10 @@ class _LayerContext:
         if parent is not None:
             visibility &= _ray_visibility(parent)
         original = (source if source is not None else obj).original
-        holdout = obj.is_holdout or original.holdout_get(view_layer=self.layer)
-        if not holdout and original.indirect_only_get(view_layer=self.layer):  # a holdout stays a hole, as in Cycles
+        owners = (original,) if parent is None else (original, parent.original)
+        holdout = obj.is_holdout or any(owner.holdout_get(view_layer=self.layer) for owner in owners)
+        # A holdout stays a hole, as in Cycles.
+        if not holdout and any(owner.indirect_only_get(view_layer=self.layer) for owner in owners):
             visibility &= ~SEEN_BY_CAMERA
         materials = self._materials(obj, source, mesh)
         if not instance.is_instance and not instance.show_self:
@@ -251,6 +253,9 @@ class _LayerContext:
     def _note_what_is_not_kept(self, obj: Any, original: Any) -> None:
         if obj.is_shadow_catcher:
             self.changes.append((Named(original), "Opal has no shadow catchers: it is rendered as any other object"))
+        linking = getattr(obj, "light_linking", None)
+        if linking is not None and (linking.receiver_collection is not None or linking.blocker_collection is not None):
+            self.changes.append((Named(original), "Opal links the light of lamps, not of meshes: where it glows it lights everything"))
         hair = (m.particle_system.settings for m in obj.modifiers if m.type == "PARTICLE_SYSTEM" and m.show_render)
         if any(settings.type == "HAIR" and settings.render_type == "PATH" for settings in hair):
             self.problems.append((Named(original), "hair of particles is not rendered"))

@@ -138,7 +138,21 @@ class SceneBuilder:
             self._report.add(name, sentence, lost=True)
         for name, sentence in visible.changes:
             self._report.add(name, sentence)
+        self._note_unit_scale(depsgraph.scene_eval.unit_settings, world, snapshot)
         return visible
+
+    def _note_unit_scale(self, units: Any, world: Any, snapshot: Snapshot) -> None:
+        """Says what lengths mean where the scene says that a unit is no metre, if anything in it is measured by the metre."""
+        measured = (
+            any(snapshot.has_gem) or any(body is not None for body in snapshot.bodies) or (world is not None and world.opal.kind != "NONE")
+        )
+        if measured and units.system != "NONE" and abs(units.scale_length - 1.0) > 1e-6:
+            self._report.add(
+                "",
+                f"the scene's unit is {units.scale_length:g} m, and Opal, as Cycles, takes it for 1 m: what stones absorb by their species "
+                "or a curve, and what media and rain take away in each metre, they take in each unit",
+                "Unit Scale",
+            )
 
     def before_change(self, call: Callable[[], None]) -> None:
         """Sets what reading once more calls before it adds an image or a spectrum to the kernels' scene."""
@@ -147,7 +161,9 @@ class SceneBuilder:
     def read_objects(self, depsgraph: Any, snapshot: Snapshot) -> Visible:
         """Finds what is seen, and reads the lamps into the snapshot."""
         self.context.begin(depsgraph)
-        links = LightLinks((o for o in depsgraph.objects if o.type == "LIGHT"), self._report.add)
+        # Not `depsgraph.objects`, which lacks what is only there as an instance.
+        lamps = (block for block in depsgraph.ids if block.id_type == "OBJECT" and block.type == "LIGHT")
+        links = LightLinks(lamps, self._report.add)
         originals: list[Any] = []
         before = self._lamp_spectra
         self._lamp_spectra = []

@@ -243,6 +243,37 @@ def test_shadow_catchers_hair_of_particles_and_stereo_are_named_in_the_report(tm
     assert lost == {"Floor": False, "Head": True, "Camera": False}
 
 
+def test_a_unit_that_is_no_metre_is_named_where_stones_are_measured_by_it(tmp_path):
+    scene = stage.scene()
+    stage.camera((0, 0, 5))
+    card = stage.plane()
+    scene.unit_settings.scale_length = 0.001
+    stage.render(tmp_path)
+    assert not stage.problems()
+    stone = bpy.data.materials.new("Stone")
+    stone.opal.kind = "GEM"
+    card.data.materials.append(stone)
+    stage.render(tmp_path)
+    assert any(entry.startswith("Unit Scale: the scene's unit is 0.001 m") for entry in stage.problems()), stage.problems()
+
+
+def test_light_links_of_lamps_that_are_only_there_as_instances_are_kept(tmp_path):
+    stage.scene()
+    stage.camera((0, 0, 5))
+    stage.world(strength=0)
+    stage.plane(size=20, material=stage.matte())
+    lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "POINT"))
+    lamp.data.energy, lamp.location = 100, (0, 0, 2)
+    lit, lamps = bpy.data.collections.new("Lit"), bpy.data.collections.new("Lamps")
+    lit.objects.link(stage.plane("Elsewhere", location=(50, 0, 0)))
+    lamps.objects.link(lamp)
+    copies = stage.link("Copies", None)
+    copies.instance_type, copies.instance_collection = "COLLECTION", lamps
+    assert stage.render(tmp_path)[..., :3].mean() > 0.1
+    lamp.light_linking.receiver_collection = lit
+    assert stage.render(tmp_path)[..., :3].max() == 0
+
+
 @pytest.mark.parametrize("kind", ["BsdfPrincipled", "BsdfGlass", "BsdfMetallic"])
 def test_a_thin_film_that_is_not_shaded_is_named(kind, tmp_path):
     stage.scene()

@@ -250,6 +250,27 @@ def test_a_holdout_stays_a_hole_where_its_collection_is_also_indirect_only(tmp_p
     assert stage.render(tmp_path)[..., 3].max() == 0
 
 
+@pytest.mark.parametrize(("way", "seen"), [("indirect_only", 1.0), ("holdout", 0.0), ("is_holdout", 0.0)])
+def test_what_hides_an_instancer_hides_its_instances(way, seen, tmp_path):
+    """Alpha: of the sky behind what is indirect only, none in a hole."""
+    scene = stage.scene()
+    stage.camera((0, 0, 5))
+    stage.world()
+    card = stage.plane(size=20, material=stage.glowing(strength=5))
+    copied, around = bpy.data.collections.new("Copied"), bpy.data.collections.new("Around")
+    scene.collection.objects.unlink(card)
+    copied.objects.link(card)
+    scene.collection.children.link(around)
+    copies = bpy.data.objects.new("Copies", None)
+    copies.instance_type, copies.instance_collection = "COLLECTION", copied
+    around.objects.link(copies)
+    owner = copies if way == "is_holdout" else bpy.context.view_layer.layer_collection.children["Around"]
+    setattr(owner, way, True)
+    picture = stage.render(tmp_path)
+    assert picture[..., 3].mean() == pytest.approx(seen), "alpha"
+    assert picture[..., :3].max() < 1.1, "the card itself is not seen"
+
+
 @pytest.mark.parametrize("left_out, expected", [(None, 0.25), ("use_sky", 0.0), ("use_solid", 1.0)])
 def test_the_view_layer_s_filter_leaves_out_what_it_says(left_out, expected, tmp_path):
     stage.scene(samples=16)

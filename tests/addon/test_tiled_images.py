@@ -54,3 +54,17 @@ def test_a_tile_holds_what_blender_holds_of_its_file(depth, suffix, packed, tmp_
             assert worst <= step, f"{space}, {alpha_mode}: {worst:g} apart, {step} allowed"
             bpy.data.images.remove(plain)
             bpy.data.images.remove(tiled)
+
+
+def test_tiles_that_were_painted_and_not_saved_are_named(tmp_path):
+    stage.scene()
+    stage.camera((0, 0, 5))
+    material = stage.glowing()
+    texture = material.node_tree.nodes.new("ShaderNodeTexImage")
+    texture.image = bpy.data.images.new("Painted", 4, 4, tiled=True)
+    texture.image.pixels.foreach_set(np.ones(64, np.float32))
+    emission = next(node for node in material.node_tree.nodes if node.type == "EMISSION")
+    material.node_tree.links.new(texture.outputs["Color"], emission.inputs["Color"])
+    stage.plane(material=material)
+    stage.render(tmp_path)
+    assert any(entry.startswith("Painted: Tiles that were painted") for entry in stage.problems()), stage.problems()
