@@ -182,7 +182,8 @@ def _write(gem: Any, settings: Any) -> None:
     gem.absorption_color = settings.absorption_color
     gem.absorption_depth = settings.absorption_depth
     gem.absorption_source = "COLOR"
-    if settings.absorption_curve is not None:
+    # The curve of a library override stays its library's; the species is rendered by its own table all the same.
+    if settings.absorption_curve is not None and gem.id_data.override_library is None:
         set_curve(gem, settings.absorption_curve)
 
 

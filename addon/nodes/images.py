@@ -9,6 +9,7 @@ multiplied by alpha unless the image says otherwise (Channel Packed, None, data)
 from __future__ import annotations
 
 import os
+import re
 import tempfile
 from collections.abc import Callable
 from contextlib import contextmanager
@@ -22,7 +23,6 @@ from .context import Problem
 TRANSFER_LINEAR, TRANSFER_SRGB = 0, 1
 _SRGB = {"sRGB", "sRGB Texture"}
 _LINEAR = {"Linear", "Linear Rec.709", "Linear Rec.709 (sRGB)", "scene_linear", "Non-Color", "Raw", "Generic Data"}
-_READ_AS_LOADED = {"SEQUENCE", "MOVIE"}
 
 
 class Images:
@@ -41,11 +41,14 @@ class Images:
         self._numbers: dict[tuple, int] = {}
         self.any_frames = False  # whether a sequence or a film was asked for
 
-    def index(self, image: Any, image_user: Any = None) -> int:
-        """The number of an image; -1 where it cannot be read."""
-        if image.source in _READ_AS_LOADED:
-            self.any_frames = True
-            self._note(Problem(Named(image), "", "Sequences and films show the frame that Blender has loaded."))
+    def index(self, image: Any, image_user: Any = None, frame: int = 1) -> int:
+        """The number of an image, of a sequence at its user's frame while the scene is at `frame`; -1 where it cannot be read."""
+        self.any_frames |= image.source in {"SEQUENCE", "MOVIE"}
+        if image.source == "SEQUENCE" and image_user is not None and not image.packed_files:
+            shown = frame_shown(image_user, frame)
+            return self._number((key_of(image), "frame", shown), image, lambda: frame_pixels(image, shown))
+        if image.source == "MOVIE":
+            self._note(Problem(Named(image), "", "Films show the frame that Blender has loaded."))
         return self._number((key_of(image),), image, lambda: loaded_pixels(image))
 
     def tiles(self, image: Any) -> list[tuple[int, int]]:
@@ -98,6 +101,32 @@ def loaded_pixels(image: Any) -> np.ndarray | None:
     image.pixels.foreach_get(values)
     values = values.reshape(height, width, channels)
     return values if image.is_float else np.rint(values * 255).clip(0, 255).astype(np.uint8)
+
+
+def frame_shown(image_user: Any, frame: int) -> int:
+    """The number of the frame that an image user shows while the scene is at `frame`, as Blender counts."""
+    length = image_user.frame_duration
+    if length == 0:
+        return 0
+    place = frame - image_user.frame_start + 1
+    if image_user.use_cyclic:
+        place = place % length or length
+    return min(max(place, 0), length) + image_user.frame_offset
+
+
+def frame_pixels(image: Any, number: int) -> np.ndarray | None:
+    """One frame of a sequence, read from its file; shape, type and meaning as of `loaded_pixels`.
+
+    The frame's number takes the place of the last digits in the file's name.
+    """
+    import bpy
+
+    folder, name = os.path.split(bpy.path.abspath(image.filepath_raw, library=image.library))
+    stem, suffix = os.path.splitext(name)
+    stem = re.sub(r"\d+(?=\D*$)", lambda digits: f"{max(number, 0):0{len(digits.group())}d}", stem)
+    path = os.path.join(folder, stem + suffix)
+    pixels = _file_pixels(path) if os.path.isfile(path) else None
+    return None if pixels is None else _as_loaded(pixels, image)
 
 
 def tile_pixels(image: Any, position: int, number: int) -> np.ndarray | None:

@@ -59,7 +59,8 @@ class NodeContext:
 
     def image_index(self, image: Any, image_user: Any) -> int:
         """The number of an image; -1 where it cannot be read."""
-        return self._images.index(image, image_user)
+        frame = self.depsgraph.scene_eval.frame_current if self.depsgraph is not None else 1
+        return self._images.index(image, image_user, frame)
 
     def _add_image(self, pixels: np.ndarray, transfer: int) -> int:
         self.before_change()
