@@ -118,6 +118,35 @@ def test_transparent_film_has_alpha_where_something_is_seen(tmp_path):
     np.testing.assert_array_equal(picture[0, 0], (0, 0, 0, 0))
 
 
+@pytest.mark.parametrize("opacity", [0.1, 0.9])
+@pytest.mark.parametrize("kind", ["Principled", "mix", "filter", "holdout behind"])
+def test_a_transparent_film_keeps_of_the_sky_what_surfaces_let_through(kind, opacity, tmp_path):
+    """Alpha counted paths that passed: a filter of glass was not there, and of a mix there was what the paths' chance of passing said."""
+    scene = stage.scene(passes=4, samples=64)
+    scene.render.film_transparent = True
+    stage.camera((0, 0, 5))
+    stage.world()
+    passing = 1 - opacity
+    if kind == "mix":
+        material = stage.node_material("Veil", "BsdfTransparent")
+        tree = material.node_tree
+        mix, matte = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeBsdfDiffuse")
+        mix.inputs[0].default_value = opacity
+        clear, output = (next(n for n in tree.nodes if n.type == kind) for kind in ("BSDF_TRANSPARENT", "OUTPUT_MATERIAL"))
+        tree.links.new(clear.outputs[0], mix.inputs[1])
+        tree.links.new(matte.outputs[0], mix.inputs[2])
+        tree.links.new(mix.outputs[0], output.inputs["Surface"])
+    elif kind == "filter":
+        material = stage.node_material("Veil", "BsdfTransparent", Color=(passing, passing, passing, 1))
+    else:
+        material = stage.node_material("Veil", "BsdfPrincipled", Alpha=opacity)
+    stage.plane(size=20, material=material)
+    if kind == "holdout behind":
+        stage.plane("Hole", size=20, location=(0, 0, -1)).is_holdout = True
+    # 49,152 paths, each off by half at most
+    assert stage.render(tmp_path)[..., 3].mean() == pytest.approx(opacity, abs=0.009)
+
+
 def test_holdout_cuts_the_film(tmp_path):
     scene = stage.scene()
     scene.render.film_transparent = True

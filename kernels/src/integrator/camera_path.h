@@ -72,6 +72,8 @@ class CameraPath {
   void meet_emission(const Hit &hit);
   void escape();
   void meet_surroundings();
+  // Which part of what lies here shows behind all that was passed: that the path came here is chance, so it has a weight.
+  float seen_through() const;
   // Whether photons bring what the ray has met.
   bool brought(const SourceId &source) const;
   void add_met(const SourceId &source, const Spectrum &radiance, const Vec3 &point, const Vec3 &normal, float distance);

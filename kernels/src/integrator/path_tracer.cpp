@@ -90,7 +90,7 @@ void CameraPath::step() {
     pass_or_stop();
     return;
   }
-  if (surface_.closures.holdout > 0 && bounces_ == 0) light_.alpha *= 1 - surface_.closures.holdout;
+  if (surface_.closures.holdout > 0 && bounces_ == 0) light_.alpha -= surface_.closures.holdout * seen_through();
   scatter();
 }
 
@@ -126,13 +126,15 @@ void CameraPath::escape() {
   meet_surroundings();
 }
 
+float CameraPath::seen_through() const { return (throughput_ / path_pdf_.average()).average(); }
+
 void CameraPath::meet_surroundings() {
   if (!interior_.empty()) {  // out through a hole
     const Spectrum n = index_of_refraction(scene_, interior_.current(), w_);
     throughput_ *= n * n;
   }
   const bool seen_at_first_hand = bounces_ == 0;
-  if (seen_at_first_hand && settings_.transparent_film) light_.alpha = 0;
+  if (seen_at_first_hand && settings_.transparent_film) light_.alpha -= seen_through();
   EscapedRadiance sources[8];
   const int n = escaped_radiance(scene_, ray_.direction, ray_kind_, w_, sources, 8);
   for (int i = 0; i < n; ++i) {
