@@ -8,6 +8,9 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+# What programs call the colour attribute that renders, as the empty name is the UV map that does; no attribute has this name.
+RENDER_COLOR = "\0"
+
 
 class Problem(NamedTuple):
     """Something that a node tree asks for and Opal does not give.
@@ -42,7 +45,7 @@ class NodeContext(Protocol):
     depsgraph: Any
 
     def attribute_id(self, name: str) -> int:
-        """The number by which programs read a mesh attribute. The empty name is the UV map that renders."""
+        """The number by which programs read a mesh attribute. The empty name is the UV map that renders, `RENDER_COLOR` the colours that do."""
 
     def attribute_name(self, number: int) -> str:
         """The name that `attribute_id` gave this number."""

@@ -9,6 +9,7 @@ from opal_kernels.optics import colour
 from . import operations as ops
 from .camera import camera_matrices
 from .compiler import NodeView
+from .context import RENDER_COLOR
 from .operations import Op
 from .program import ONE, ZERO, Table, Value, constant
 from .registry import reads
@@ -86,10 +87,7 @@ def volume_info(n: NodeView) -> dict[str, Value]:
 
 @reads("ShaderNodeVertexColor")
 def color_attribute(n: NodeView) -> dict[str, Value]:
-    name = n.node.layer_name
-    if not name:
-        n.problem("Choose a colour attribute by name; the one that renders is not looked up.")
-    return _attribute(n, name)
+    return _attribute(n, n.node.layer_name or RENDER_COLOR)
 
 
 def _attribute(n: NodeView, name: str) -> dict[str, Value]:

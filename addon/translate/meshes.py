@@ -13,6 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from ..nodes.context import RENDER_COLOR
+
 # Attribute types that shaders can read: RNA name of the value, components.
 _READERS = {
     "FLOAT": ("value", np.float32, 1),
@@ -52,7 +54,8 @@ class MeshNeeds:
     Attributes
     ----------
     attributes : mapping
-        Attribute name to the number programs use; an empty name stands for the UV map that renders.
+        Attribute name to the number programs use; an empty name stands for the UV map that renders,
+        `RENDER_COLOR` for the colours that do.
     tangent_uv : str or None
         UV map whose tangents a normal map needs; an empty name stands for the one that renders.
     generated : bool
@@ -178,7 +181,7 @@ def _render_uv_name(mesh: Any) -> str | None:
 
 def _shader_attribute(mesh: Any, name: str, corner: np.ndarray, polygon: np.ndarray, problems: list[str]) -> tuple[int, np.ndarray] | None:
     """Domain and values of an attribute as float32, or None where the mesh has none of that name."""
-    name = name or _render_uv_name(mesh)
+    name = mesh.attributes.default_color_name if name == RENDER_COLOR else name or _render_uv_name(mesh)
     attribute = mesh.attributes.get(name) if name else None
     if attribute is None:
         return None

@@ -85,6 +85,22 @@ def test_uv_maps_and_colours_arrive_per_corner_vertex_and_face():
     np.testing.assert_allclose(found[2][1], [[7.0], [7.0]])
 
 
+def test_a_colour_attribute_without_a_name_is_the_one_that_renders(tmp_path):
+    stage.scene(samples=16)
+    stage.camera((0, 0, 5))
+    material = stage.glowing()
+    tree = material.node_tree
+    emission = next(node for node in tree.nodes if node.type == "EMISSION")
+    tree.links.new(tree.nodes.new("ShaderNodeVertexColor").outputs["Color"], emission.inputs["Color"])
+    card = stage.plane(size=20, material=material)
+    for name, color in (("Other", (1, 1, 1, 1)), ("Mine", (0.1, 0.7, 0.3, 1))):
+        for value in card.data.color_attributes.new(name, "FLOAT_COLOR", "POINT").data:
+            value.color = color
+    card.data.color_attributes.render_color_index = card.data.color_attributes.find("Mine")
+    assert stage.render(tmp_path)[..., :3].mean(axis=(0, 1)) == pytest.approx((0.1, 0.7, 0.3), abs=0.02)
+    assert not stage.problems()
+
+
 def test_generated_coordinates_run_from_0_to_1_over_the_mesh():
     obj = stage.mesh("Box", [(x, y, z) for x in (-1, 3) for y in (0, 2) for z in (5, 6)], [(0, 1, 3, 2), (4, 6, 7, 5)])
     generated = read(obj, generated=True).generated
