@@ -8,7 +8,7 @@ that of the distances along the ray.
 import numpy as np
 import pytest
 from opal_kernels import programs
-from opal_kernels.descriptions import Density, LightType, MaterialFlag, Phase, PhaseKind, World
+from opal_kernels.descriptions import Carry, Density, LightType, MaterialFlag, Phase, PhaseKind, World
 from opal_kernels.scene import Scene
 from transport_scenes import IDENTITY, box, looking_down, orthographic, picture, square
 
@@ -151,6 +151,31 @@ def test_under_the_ground_nothing_is_scattered():
         depth = np.concatenate([[0], np.cumsum(SIGMA * (air[1:] + air[:-1]) / 2 * np.diff(lengths))])
         expected = np.trapezoid(SIGMA * air * np.exp(-depth - SIGMA * HEIGHT * air / SUN[2]), lengths) / (4 * np.pi)
         assert seen(scene, elevation, height, seeds=8) == pytest.approx(expected, rel=0.03)
+
+
+@pytest.mark.parametrize("source", ["sun", "sky"])
+@pytest.mark.parametrize("height", [100.0, None])
+def test_photons_from_afar_come_through_the_haze_above_the_scene(source, height):
+    """Ground under haze of depth 1, all of whose light photons bring: half of E exp(-1) / pi of a sun; nothing through haze without an end."""
+    with Scene(threads=2) as scene:
+        shape = {} if height is None else {"density": Density.HEIGHT, "scale_height": height}
+        scene.set_world_medium(scene.add_medium(1e-2, 0.0, **shape))
+        scene.add_instances(scene.add_mesh(*square(1.0)), IDENTITY, [scene.add_material(programs.diffuse((0.5, 0.5, 0.5)))])
+        if source == "sun":
+            scene.add_light(type=LightType.SUN, power=1.0, transform=looking_down(0.0))
+        else:
+            scene.set_world(World(programs.emission()))
+        scene.set_camera(**orthographic(0.5, looking_down(1e-3)))
+        scene.commit()
+        settings = {"size": 4, "seed": 1, "samples_per_pass": 256}
+        found = picture(scene, 2, photons_per_pass=100_000, photons_carry=Carry.ALL, **settings).mean()
+        expected = picture(scene, 2, photons_per_pass=0, **settings).mean()
+    if height is None:
+        assert found == expected == 0
+    else:
+        if source == "sun":
+            assert expected == pytest.approx(0.5 * np.exp(-1) / np.pi, rel=3e-3)
+        assert found == pytest.approx(expected, rel=0.03)
 
 
 def test_sixteen_samples_make_a_clean_bow():

@@ -76,7 +76,8 @@ enum Dimension : uint32_t {
   kDimEmissionLight = 6,  // 2: which light, spare
   kDimEmissionPosition = 8,
   kDimEmissionDirection = 10,
-  kDimBounce = 16,  // first of the per-bounce blocks
+  kDimEmissionWay = 12,  // 1: through the world's medium
+  kDimBounce = 16,       // first of the per-bounce blocks
 };
 inline constexpr uint32_t kDimsPerBounce = 20;
 enum BounceDimension : uint32_t {

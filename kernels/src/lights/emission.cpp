@@ -247,6 +247,7 @@ bool sample_emission(const Scene &scene, const std::vector<EmissionTarget> &targ
   Emission e;
   Spectrum spectrum;
   out.soft_radius = 0;
+  out.from_infinity = out.source.kind == SourceKind::World;
   bool emitted = false;
   switch (out.source.kind) {
     case SourceKind::Lamp: {
@@ -260,6 +261,7 @@ bool sample_emission(const Scene &scene, const std::vector<EmissionTarget> &targ
                                   : emit_sun(scene, lamp, table.targets, pick, position, direction, e);
       if (both_ways && !inwards) e.factor /= 1 - kInwards;
       spectrum = lamp_spectrum(lights, lamp, w);
+      out.from_infinity = lamp.type == OPAL_LIGHT_SUN;
       if (lamp.is_round() && !lamp.sphere) out.centre = lamp.position, out.soft_radius = lamp.radius;
       break;
     }

@@ -78,7 +78,8 @@ struct EmissionSample {
   SourceId source;
   Vec3 centre;  // with soft_radius: of the lamp
   float soft_radius = 0;
-  float reach = kInfinity;  // how far the light goes before something turns it; finite within a sphere that shines inwards
+  float reach = kInfinity;     // how far the light goes before something turns it; finite within a sphere that shines inwards
+  bool from_infinity = false;  // of a sun or the world: the ray begins where the scene does, not where its light comes from
 };
 // Whether the photon counts at the first thing that it meets. A lamp with soft falloff is a disc that faces whatever it
 // lights, which is less than the sphere that photons leave: those that p's disc could not have sent are dropped, so

@@ -86,10 +86,20 @@ class PhotonPath {
     if (!source_emits_photons(scene_, settings_.photons_carry, sample.source)) return false;
     ray_ = sample.ray;
     flux_ = sample.flux * (1.0f / (float(task_.count) * density));
+    if (sample.from_infinity && scene_.world_medium >= 0) flux_ *= arrives_through_the_world();
     start_ = flux_.max();
     entered_ = scene_.any_medium ? media_at(scene_, ray_.origin) : MediumSet{};
     interior_ = interior_at(scene_, ray_.origin);
     return flux_.is_finite() && start_ > 0;
+  }
+
+  // What the world's medium lets through of a sun's light or the world's before the ray begins.
+  Spectrum arrives_through_the_world() const {
+    MediumSet world;
+    world.enter(MediumSet::kOfWorld, scene_.world_medium);
+    RandomStream random(sampler_, kDimEmissionWay);
+    return estimate_transmittance(scene_, media_that_fill(scene_, world, {}), w_, {ray_.origin, -ray_.direction}, kInfinity,
+                                  random);
   }
 
   bool step(uint32_t events) {
