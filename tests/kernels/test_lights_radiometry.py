@@ -13,8 +13,11 @@ from light_probe import (
     sample_light,
     scene_with,
 )
-from opal_kernels.descriptions import LightType, World
+from opal_kernels import programs
+from opal_kernels.descriptions import LightType, Ray, World
 from opal_kernels.optics import colour, illuminants, uplift
+from opal_kernels.scene import Scene
+from transport_scenes import IDENTITY, looking_down, orthographic, picture, square
 
 DOWN, UP = (0, 0, -1), (0, 0, 1)
 WEIGHTS = np.array([0.2126729, 0.7151522, 0.0721750])  # of Rec.709 in luminance
@@ -272,6 +275,26 @@ def test_lamps_hidden_from_a_kind_of_ray_are_not_met_by_it():
     with scene_with(lamp(LightType.ELLIPSE, (0, 0, 2), DOWN, power=5.0, visibility=63 & ~1)) as scene:
         assert lights_along(scene, (0, 0, 0), [UP], ray_kind=1)[1].max() == 0
         assert lights_along(scene, (0, 0, 0), [UP], ray_kind=2)[1].min() > 0
+
+
+@pytest.mark.parametrize(
+    ("program", "by"), [(programs.diffuse((0.5, 0.5, 0.5)), Ray.DIFFUSE), (programs.mirror(roughness=0.5), Ray.GLOSSY)]
+)
+@pytest.mark.parametrize("kind", [LightType.POINT, LightType.RECTANGLE])
+def test_lamps_hidden_from_a_kind_of_ray_do_not_light_what_scatters_by_it(kind, program, by):
+    """However wide the lobe: rough gloss sends glossy rays."""
+
+    def seen(visibility):
+        with Scene(threads=2) as scene:
+            scene.add_instances(scene.add_mesh(*square(1.0)), IDENTITY, [scene.add_material(program)])
+            scene.add_light(type=kind, size_u=0.5, size_v=0.5, transform=looking_down(1.0), visibility=visibility)
+            scene.set_camera(**orthographic(0.5, looking_down(5.0)))
+            scene.commit()
+            return picture(scene, 1, 8, samples_per_pass=4, photons_per_pass=0).mean()
+
+    other = Ray.GLOSSY if by == Ray.DIFFUSE else Ray.DIFFUSE
+    assert seen(Ray.ALL & ~by) == 0
+    assert seen(Ray.ALL & ~other) == seen(Ray.ALL) > 0
 
 
 def test_light_linking_keeps_a_lamp_from_sets_that_it_does_not_light():

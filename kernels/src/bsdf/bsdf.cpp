@@ -254,6 +254,14 @@ Spectrum bsdf_eval_rough(const ClosureSet &set, const ShadingPoint &sp, const Ve
   return uplift(f, w);
 }
 
+Spectrum bsdf_eval_diffuse(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w,
+                           Transport transport) {
+  Vec3 f;
+  for (int i = 0; i < set.count; ++i)
+    if (is_diffuse(set.lobes[i])) f += eval_lobe(set.lobes[i], sp, wi, transport).f;
+  return uplift(f, w);
+}
+
 Spectrum bsdf_eval_diffuse_alone(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w) {
   Vec3 f;
   for (int i = 0; i < set.count; ++i)

@@ -115,7 +115,10 @@ bool bsdf_has_smooth_lobe(const ClosureSet &set);
 // The part of bsdf_eval (f |cos|) that lobes of GGX alpha above kSharpAlpha and diffuse ones bring: where photons are left.
 Spectrum bsdf_eval_rough(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w,
                          Transport transport);
-// The part of bsdf_eval (f |cos|) of diffuse lobes, as it is without glossy layers above them; what remains of a material once
+// The part of bsdf_eval (f |cos|) of diffuse lobes.
+Spectrum bsdf_eval_diffuse(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w,
+                           Transport transport);
+// The same of light carried from the camera as it is without glossy layers above them; what remains of a material once
 // glossy scattering is left out, as Cycles leaves it out after a diffuse bounce when caustics are off.
 Spectrum bsdf_eval_diffuse_alone(const ClosureSet &set, const ShadingPoint &sp, const Vec3 &wi, const Wavelengths &w);
 bool bsdf_is_only_diffuse(const ClosureSet &set);

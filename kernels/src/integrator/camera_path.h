@@ -91,6 +91,8 @@ class CameraPath {
   // The last ray of a path that looks for lamps only: on through what is transparent.
   void pass_or_stop();
   void sample_direct(uint32_t dimension);
+  // A light hidden from a kind of ray does not light the lobes that send such rays: takes them out of `f`.
+  void leave_out_blind_lobes(const LightSample &sample, bool with_diffuse, Spectrum &f) const;
   // What of a light sample arrives along a ray that starts so; false: nothing.
   bool passes(Ray shadow, const LightSample &sample, uint32_t dimension, Passage &through);
 

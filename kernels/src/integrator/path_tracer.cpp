@@ -334,11 +334,10 @@ void CameraPath::sample_direct(uint32_t dimension) {
       !brought_by_photons(scene_, settings_.photons_carry, EventClass::Rough, rough_events_ > 0, sample.source);
   const bool keep_sharp =
       !brought_by_photons(scene_, settings_.photons_carry, EventClass::Sharp, rough_events_ > 0, sample.source);
-  // Lamps hidden from a kind of ray do not light the lobes that send such rays.
-  const bool behind = dot(sample.wi, sp.ng) < 0;
   Spectrum f(0.0f);
-  if (keep_rough && sample.visibility & (behind ? OPAL_RAY_TRANSMISSION : OPAL_RAY_DIFFUSE)) f += value.rough;
-  if (keep_sharp && sample.visibility & (behind ? OPAL_RAY_TRANSMISSION : OPAL_RAY_GLOSSY)) f += value.sharp;
+  if (keep_rough) f += value.rough;
+  if (keep_sharp) f += value.sharp;
+  leave_out_blind_lobes(sample, keep_rough, f);
   if (f.is_zero()) return;
   Spectrum contribution = throughput_ * f * sample.radiance;
   if (contribution.is_zero() || !contribution.is_finite()) return;
@@ -354,6 +353,23 @@ void CameraPath::sample_direct(uint32_t dimension) {
   if (keeps_layers_) layers_ = layers_after_surface(sample.wi, 0);
   add_scattered(contribution, value.sharp.sum() > value.rough.sum() && rough_events_ > 0);
   layers_ = before;
+}
+
+void CameraPath::leave_out_blind_lobes(const LightSample &sample, bool with_diffuse, Spectrum &f) const {
+  const bool behind = dot(sample.wi, surface_.sp.ng) < 0;
+  const uint32_t kinds = behind ? OPAL_RAY_TRANSMISSION : OPAL_RAY_DIFFUSE | OPAL_RAY_GLOSSY, seen = sample.visibility & kinds;
+  if (seen == kinds) return;
+  if (seen == 0) {
+    f = Spectrum(0.0f);
+    return;
+  }
+  const Spectrum diffuse =
+      with_diffuse ? bsdf_eval_diffuse(surface_.closures, surface_.sp, sample.wi, w_, Transport::Radiance) : Spectrum(0.0f);
+  if (seen == OPAL_RAY_DIFFUSE) {
+    f = diffuse;
+    return;
+  }
+  for (int i = 0; i < kWavelengths; ++i) f[i] = std::max(0.0f, f[i] - diffuse[i]);
 }
 
 bool CameraPath::passes(Ray shadow, const LightSample &sample, uint32_t dimension, Passage &through) {
