@@ -90,6 +90,22 @@ def test_a_lamp_whose_sphere_lies_in_the_medium_shines_inwards_too(carry):
     agrees(carry.name, found, expected, 0.015)
 
 
+@pytest.mark.parametrize(("half", "carry"), [(0.5, Carry.INDIRECT), (None, Carry.ALL)])
+def test_a_lamp_in_fog_without_an_end_shines_all_round(half, carry):
+    """Five metres over a square of one and beside the view, far outside of the sphere round all there is (a fifth of the light is indirect), and over nothing."""
+    with Scene(threads=2) as scene:
+        scene.set_world_medium(scene.add_medium(0.1, 0.9))
+        if half:
+            scene.add_instances(scene.add_mesh(*square(half)), IDENTITY, [scene.add_material(programs.diffuse((0.5, 0.5, 0.5)))])
+        scene.add_light(type=LightType.POINT, power=100.0, transform=placed(2.5, 0.0, 5.0)[:3])
+        scene.set_camera(**orthographic(1.0, looking_down(10.0)))
+        scene.commit()
+        expected = means_of(scene, passes=1, samples_per_pass=64, photons_per_pass=0)
+        settings = {"photons_carry": carry, "volume_estimate": VolumeEstimate.BEAMS, "volume_radius": 0.1}
+        found = means_of(scene, passes=1, samples_per_pass=4, photons_per_pass=12_000, **settings)
+    agrees(carry.name, found, expected, 0.08)
+
+
 def fog_between_walls(scene):
     """A lamp over a floor and between two walls, in fog."""
     fill(scene, (-1.4, -1.4, -0.9), (1.4, 1.4, 1.4), scene.add_medium(0.5, 0.9))

@@ -12,6 +12,9 @@
 namespace opal {
 namespace {
 
+// What misses the scene is seen all the same where the world has a medium: lamps then shine all round.
+const std::vector<EmissionTarget> kAllRound = {{{}, kInfinity}};
+
 Emitter emitter_of(const LampModel &lamp) {
   if (lamp.type == OPAL_LIGHT_POINT) return {};
   if (lamp.type == OPAL_LIGHT_SPOT) return {Emitter::Kind::Everywhere, lamp.axis, lamp.cone_omc};
@@ -193,7 +196,8 @@ void EmissionTable::build(const Scene &scene, const LightTables &lights, std::ve
   for (uint32_t i = 0; i < lights.lamps.size(); ++i) {
     const LampModel &lamp = lights.lamps[i];
     if (!lamp.valid || (caustics_only && !lamp.caustics)) continue;
-    add({SourceKind::Lamp, i}, lamp.brightness * lamp_reach(lamp, targets));
+    const bool all_round = !caustics_only && scene.world_medium >= 0 && lamp.type != OPAL_LIGHT_SUN;
+    add({SourceKind::Lamp, i}, lamp.brightness * lamp_reach(lamp, all_round ? kAllRound : targets));
   }
   for (uint32_t i = 0; i < scene.emissive.size(); ++i) {
     if (i % 4096 == 0) scene.stop_if_cancelled();
@@ -255,9 +259,10 @@ bool sample_emission(const Scene &scene, const std::vector<EmissionTarget> &targ
       const bool both_ways = lamp.type == OPAL_LIGHT_POINT && lamp.sphere && targets.empty() && scene.any_medium;
       const bool inwards = both_ways && pick.y < kInwards;
       if (both_ways && !inwards) pick.y = std::min((pick.y - kInwards) / (1 - kInwards), 0x1.fffffep-1f);
+      const std::vector<EmissionTarget> &aims = targets.empty() && scene.world_medium >= 0 ? kAllRound : table.targets;
       emitted = inwards           ? emit_inwards(lamp, position, direction, e)
-                : lamp.is_round() ? emit_round(lamp, table.targets, pick, position, direction, e)
-                : lamp.is_area()  ? emit_area(lamp, table.targets, pick, position, direction, e)
+                : lamp.is_round() ? emit_round(lamp, aims, pick, position, direction, e)
+                : lamp.is_area()  ? emit_area(lamp, aims, pick, position, direction, e)
                                   : emit_sun(scene, lamp, table.targets, pick, position, direction, e);
       if (both_ways && !inwards) e.factor /= 1 - kInwards;
       spectrum = lamp_spectrum(lights, lamp, w);

@@ -169,6 +169,8 @@ std::shared_ptr<LightTables> build_light_tables(const Scene &scene) {
   t.to_casters.build(scene, t, scene.casters, true);
   if (!scene.bounds.empty())
     t.to_scene.build(scene, t, {{scene.bounds.centre(), scene.bounds.radius() * 1.001f + 1e-6f}}, false);
+  else if (scene.world_medium >= 0)  // lamps in nothing but fog; no ray from afar is aimed at a point
+    t.to_scene.build(scene, t, std::vector<EmissionTarget>(1), false);
   return tables;
 }
 

@@ -88,8 +88,8 @@ bool emission_reaches(const EmissionSample &sample, const Vec3 &p);
 // The distance along the emitted ray from which on emission_reaches() holds; infinite: nowhere.
 float emission_reaches_from(const EmissionSample &sample);
 // Emits one photon. With targets, only directions that can meet one of them are sampled (probability counted exactly,
-// overlaps included); without, the whole emission into the scene's bounding sphere. A photon for which false is returned
-// carries nothing; it counts among the M all the same. Fastest with Scene::casters itself or an empty vector.
+// overlaps included); without, the whole emission into the scene, and of lamps in the world's medium all. A photon for which
+// false is returned carries nothing; it counts among the M all the same. Fastest with Scene::casters itself or an empty vector.
 bool sample_emission(const Scene &scene, const std::vector<EmissionTarget> &targets, Vec2 pick, Vec2 position, Vec2 direction,
                      float time, const Wavelengths &w, EmissionSample &out);
 

@@ -365,7 +365,12 @@ class PhotonPath {
     out_.beams.push_back(beam);
   }
 
-  float far_away() const { return 16 * scene_.bounds.radius(); }
+  // From the scene, the camera and where the photon began.
+  float far_away() const {
+    Bounds all = scene_.bounds;
+    all.extend(camera_transform(scene_.camera, ray_.time).origin()), all.extend(emitted_.ray.origin);
+    return 16 * all.radius();
+  }
 
   // Lamps with soft falloff do not light what is too near (emission_reaches).
   float reaches_from() const {
@@ -448,6 +453,7 @@ class PhotonPath {
     if (through.blocked()) return;
     radiance *= uplift(through.surfaces, w_) * through.medium;
     radiance *= path_pdf.average() / (path_pdf * through.light_pdf).average();
+    if (!radiance.is_finite()) return;  // a wavelength that no walk of the hero's brings here
     const uint32_t pixel =
         (uint32_t(y) - uint32_t(region[1])) * uint32_t(region[2] - region[0]) + (uint32_t(x) - uint32_t(region[0]));
     out_.splats.push_back({pixel, photon_pass(sharp_events_, rough_events_), to_rgb(radiance, w_)});
