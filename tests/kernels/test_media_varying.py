@@ -11,7 +11,7 @@ import ctypes
 import numpy as np
 import pytest
 from opal_kernels import binding, programs
-from opal_kernels.descriptions import Density, EmissionDensity, MaterialFlag, Phase, PhaseKind, World
+from opal_kernels.descriptions import Density, EmissionDensity, LightType, MaterialFlag, Phase, PhaseKind, World
 from opal_kernels.optics import media, phase_functions, uplift
 from opal_kernels.scene import Scene
 from transport_scenes import IDENTITY, box, looking_down, looking_up, orthographic, perspective, picture, placed, square
@@ -415,6 +415,23 @@ def test_a_camera_inside_sees_through_the_rest():
         filled_box(scene, (-1, -1, -1), (1, 1, 1), 0.8, way="grid")
         scene.set_world(World(programs.emission()))
         holds(*mean_and_error(scene, orthographic(0.4, looking_down(0.25)), passes=2), np.exp(-1.0), 0.004)
+
+
+def test_what_has_no_end_holds_up_no_light_that_it_does_not_absorb():
+    """Noise without an end that absorbs below 560 nm alone: the rest of a sun's light gets through as through an even medium."""
+
+    def ground(**density):
+        with Scene(threads=2) as scene:
+            scene.set_world_medium(scene.add_medium(np.where(np.arange(360, 831) < 560, 5.0, 0.0), 0.0, **density))
+            scene.add_instances(scene.add_mesh(*square(1.0)), IDENTITY, [scene.add_material(programs.diffuse((0.5, 0.5, 0.5)))])
+            scene.add_light(type=LightType.SUN, power=1.0, transform=looking_down(0.0))
+            scene.set_camera(**orthographic(0.5, looking_down(1e-3)))
+            scene.commit()
+            return picture(scene, 1, 8, samples_per_pass=64, photons_per_pass=0).mean(axis=(0, 1))
+
+    even = ground()
+    assert even[0] > 0.2
+    assert ground(density=Density.NOISE, noise_scale=1.0) == pytest.approx(even, rel=5e-3)
 
 
 def test_haze_that_thins_with_height():

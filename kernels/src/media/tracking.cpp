@@ -118,9 +118,10 @@ void pass_through(RayMedia &media, float t_end, RandomStream &random, Walk &walk
       const float d = sigma > 0 ? -std::log1p(-random.next()) / sigma : kInfinity;
       const float t = from + d;
       if (!(t < interval.end)) {
-        if (!std::isfinite(interval.end)) {
-          walk.throughput = Spectrum(0.0f);
-          return;
+        if (!std::isfinite(interval.end)) {  // as in fly(): the hero alone is not held up
+          for (int i = 0; i < kWavelengths; ++i)
+            if (interval.majorant[i] > sigma) walk.throughput[i] = walk.path_pdf[i] = walk.light_pdf[i] = 0;
+          break;
         }
         const Spectrum rest = relative_transmittance(interval.majorant, interval.end - from);
         walk.throughput *= rest, walk.path_pdf *= rest, walk.light_pdf *= rest;
