@@ -343,6 +343,11 @@ void CameraPath::sample_direct(uint32_t dimension) {
   if (contribution.is_zero() || !contribution.is_finite()) return;
   Passage through;
   if (!passes(leave_surface(scene_, ray_, sp, sample.wi), sample, dimension + kDimLight, through)) return;
+  if (!(path_pdf_[0] > 0)) {  // one that follows: the walk was the hero's, whose density the passage is relative to
+    for (int i = 0; i < kWavelengths; ++i)
+      through.path_pdf[i] = through.light_pdf[i] > 0 ? through.path_pdf[i] / through.light_pdf[i] : 0.0f;
+    through.light_pdf = Spectrum(1.0f);
+  }
   Spectrum pdf = path_pdf_ * through.light_pdf * sample.pdf;
   if (!sample.dirac) {
     MediumHere here;

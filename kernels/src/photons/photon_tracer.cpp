@@ -452,8 +452,8 @@ class PhotonPath {
     ++out_.rays;
     if (through.blocked()) return;
     radiance *= uplift(through.surfaces, w_) * through.medium;
-    radiance *= path_pdf.average() / (path_pdf * through.light_pdf).average();
-    if (!radiance.is_finite()) return;  // a wavelength that no walk of the hero's brings here
+    // The walk is the hero's: what follows it alone is weighed by the hero's density, which the passage is relative to.
+    if (path_pdf[0] > 0) radiance *= path_pdf.average() / (path_pdf * through.light_pdf).average();
     const uint32_t pixel =
         (uint32_t(y) - uint32_t(region[1])) * uint32_t(region[2] - region[0]) + (uint32_t(x) - uint32_t(region[0]));
     out_.splats.push_back({pixel, photon_pass(sharp_events_, rough_events_), to_rgb(radiance, w_)});
