@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 
-from . import curve_icons, preset_panels, presets
+from . import curve_icons, preset_panels, presets, units
 from .panels import OpalPanel
 
 
@@ -104,7 +104,7 @@ class OPAL_MATERIAL_PT_gem_absorption(_MaterialPanel):
         if gem.absorption_source == "CURVE":
             row = layout.row()
             row.label(text=f"{len(gem.absorption_curve)} samples")
-            curve_icons.draw(layout, presets.absorption_chart(gem))
+            curve_icons.draw(layout, presets.absorption_chart(gem, units.here(context)))
         else:
             layout.prop(gem, "absorption_color", text="Color")
             layout.prop(gem, "absorption_depth", text="Depth")

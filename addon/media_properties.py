@@ -6,7 +6,7 @@ from typing import Any
 import bpy
 from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty, StringProperty
 
-from . import media_presets, rainbow_properties
+from . import media_presets, rainbow_properties, units
 
 
 class OpalMediumProperties(bpy.types.PropertyGroup):
@@ -145,17 +145,17 @@ class OpalMediumProperties(bpy.types.PropertyGroup):
     )
 
 
-# What rain or haze on the world begins with: of a shower cloud's base, and so thin that the sun comes through (a half of it from overhead).
+# What rain or haze on the world begins with, m and 1/m: of a shower cloud's base, and so thin that the sun comes through (a half of it from overhead).
 _WORLD_HEIGHT, _WORLD_EXTINCTION = 1000.0, 0.0005
 
 
-def _on_world_kind(world: Any, _context: Any) -> None:
+def _on_world_kind(world: Any, context: Any) -> None:
     """A world that is filled for the first time lets the sun through: defaults of a body are a wall without end there."""
     filling = {"MEDIUM": world.medium, "RAINBOW": world.rainbow}.get(world.kind)
     if filling is None:
         return
     if not world.is_property_set("scale_height"):
-        world.scale_height = _WORLD_HEIGHT
+        world.scale_height = _WORLD_HEIGHT / units.here(context)
     if not filling.is_property_set("extinction"):
         filling.extinction = _WORLD_EXTINCTION
 

@@ -11,6 +11,8 @@ import dataclasses
 import zlib
 from typing import Any
 
+from . import twin_updates, units
+
 CUSTOM = "CUSTOM"
 
 # Blender keeps the strings of a dynamic enumeration by reference only: they have to live here.
@@ -86,8 +88,15 @@ def _absorption_differs(gem: Any) -> bool:
     return (*gem.absorption_color, gem.absorption_depth) != tuple(gem.last_good_absorption)
 
 
-def settings_of(gem: Any) -> Any:
-    """The `opal_kernels.gem.Settings` that a gem's properties show."""
+def settings_of(gem: Any, metres: float = 1.0) -> Any:
+    """The `opal_kernels.gem.Settings` that a gem's properties show.
+
+    Parameters
+    ----------
+    gem : OpalGemProperties
+    metres : float
+        Per unit (`units`), which the absorption depth is in; nothing else depends on it.
+    """
     from opal_kernels.gem import Settings
 
     # A color that was driven away from a species' counts before the species' curve, as an edited one does.
@@ -98,7 +107,7 @@ def settings_of(gem: Any) -> Any:
         sellmeier_b=tuple(gem.sellmeier_b),
         sellmeier_c=tuple(gem.sellmeier_c),
         absorption_color=tuple(gem.absorption_color),
-        absorption_depth=gem.absorption_depth,
+        absorption_depth=gem.absorption_depth * metres,
         absorption_curve=curve_of(gem) if by_curve else None,
     )
 
@@ -135,8 +144,9 @@ def take_curve(gem: Any, samples: Any) -> None:
     global _filling
     _filling = True
     try:
-        set_curve(gem, samples)
-        gem.species = CUSTOM
+        with twin_updates.one_edit(gem):
+            set_curve(gem, samples)
+            gem.species = CUSTOM
     finally:
         _filling = False
 
@@ -164,23 +174,39 @@ def index_chart(gem: Any) -> Any:
     return None if gems.refusal(settings) else wavelength_curve.index_chart(gems.index(settings))
 
 
-def absorption_chart(gem: Any) -> Any:
-    """The `opal_kernels.charts.wavelength_curve.Chart` of a gem's absorption; None for a clear stone."""
+def absorption_by_curve(gem: Any) -> Any:
+    """σa (1/m) at 360 ... 830 nm, shape (471,), of a gem that absorbs by its species' table or by a curve; None where its color says how."""
+    import numpy as np
+    from opal_kernels import gem as gems
+    from opal_kernels.descriptions import wavelengths
+    from opal_kernels.optics import species
+
+    if (name := species_of(gem)) != CUSTOM:
+        return species.absorption(name, wavelengths())
+    settings = settings_of(gem)
+    if settings.absorption_curve is None:
+        return None
+    sigma = None if gems.absorption_refusal(settings) else gems.absorption(settings)
+    return np.zeros_like(wavelengths()) if sigma is None else sigma
+
+
+def absorption_chart(gem: Any, metres: float = 1.0) -> Any:
+    """The `opal_kernels.charts.wavelength_curve.Chart` of a gem's absorption; None for a clear stone. `metres` as in `settings_of`."""
     from opal_kernels import gem as gems
     from opal_kernels.charts import wavelength_curve
 
-    settings = settings_of(gem)
+    settings = settings_of(gem, metres)
     sigma = None if gems.absorption_refusal(settings) else gems.absorption(settings)
     return None if sigma is None else wavelength_curve.absorption_chart(sigma)
 
 
-def _write(gem: Any, settings: Any) -> None:
+def _write(gem: Any, settings: Any, metres: float) -> None:
     gem.dispersion = settings.dispersion
     gem.cauchy_b, gem.cauchy_c = settings.cauchy
     gem.sellmeier_b = settings.sellmeier_b
     gem.sellmeier_c = settings.sellmeier_c
     gem.absorption_color = settings.absorption_color
-    gem.absorption_depth = settings.absorption_depth
+    gem.absorption_depth = settings.absorption_depth / metres
     gem.absorption_source = "COLOR"
     # The curve of a library override stays its library's; the species is rendered by its own table all the same.
     if settings.absorption_curve is not None and gem.id_data.override_library is None:
@@ -210,7 +236,15 @@ def _index_refusal(gem: Any) -> str:
     return next((sentence for sentence in refusals if sentence), "")
 
 
-def on_species(gem: Any, _context: Any = None) -> None:
+def _take_usual_depth(gem: Any, metres: float) -> None:
+    """The depth of a gem's color, until somebody sets it: the same whatever a unit is."""
+    from opal_kernels import gem as gems
+
+    if not gem.is_property_set("absorption_depth"):
+        gem.absorption_depth = gems.USUAL_DEPTH / metres
+
+
+def on_species(gem: Any, context: Any = None) -> None:
     """Fills a gem's numbers from the species chosen."""
     global _filling
     if _filling or gem.species == CUSTOM:
@@ -219,7 +253,9 @@ def on_species(gem: Any, _context: Any = None) -> None:
 
     _filling = True
     try:
-        _write(gem, gems.settings_of_species(gem.species, gem.absorption_depth))
+        metres = units.here(context)
+        _take_usual_depth(gem, metres)
+        _write(gem, gems.settings_of_species(gem.species, gem.absorption_depth * metres), metres)
         _keep(gem)
     finally:
         _filling = False
@@ -245,7 +281,7 @@ def on_index(gem: Any, _context: Any = None) -> None:
         _filling = False
 
 
-def on_absorption(gem: Any, _context: Any = None) -> None:
+def on_absorption(gem: Any, context: Any = None) -> None:
     """After an edit of colour or depth: the stone absorbs by them and is no longer its species', or the last good ones stay."""
     global _filling
     if _filling or not _absorption_differs(gem):
@@ -254,13 +290,15 @@ def on_absorption(gem: Any, _context: Any = None) -> None:
 
     _filling = True
     try:
-        settings = settings_of(gem)
+        metres = units.here(context)
+        settings = settings_of(gem, metres)
         if sentence := gems.absorption_refusal(dataclasses.replace(settings, absorption_curve=None)):
             good = tuple(gem.last_good_absorption)
             gem.absorption_color, gem.absorption_depth = good[:3], good[3]
             gem.refusal = sentence
         else:
             gem.species, gem.absorption_source = CUSTOM, "COLOR"
+            _take_usual_depth(gem, metres)
             gem.last_good_absorption = (*gem.absorption_color, gem.absorption_depth)
             gem.last_good_source = "COLOR"
             gem.refusal = ""
@@ -268,7 +306,7 @@ def on_absorption(gem: Any, _context: Any = None) -> None:
         _filling = False
 
 
-def on_absorption_source(gem: Any, _context: Any = None) -> None:
+def on_absorption_source(gem: Any, context: Any = None) -> None:
     """After the choice of colour or curve: an empty curve is refused."""
     global _filling
     if _filling:
@@ -283,6 +321,8 @@ def on_absorption_source(gem: Any, _context: Any = None) -> None:
         else:
             gem.species = CUSTOM
             gem.last_good_source = gem.absorption_source
+            _take_usual_depth(gem, units.here(context))
+            gem.last_good_absorption = (*gem.absorption_color, gem.absorption_depth)
         gem.refusal = sentence
     finally:
         _filling = False

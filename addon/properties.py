@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Everything Opal saves in a file: `scene.opal`, `view_layer.opal` and `material.opal`.
 
-Lengths are metres, wavelengths nm, angles radians. The names are public: scripts and saved files depend on them.
+Lengths are Blender units, which the interface shows by the Unit Scale (`units`), wavelengths nm, angles radians. The names are public: scripts and saved files depend on them.
 """
 
 import bpy

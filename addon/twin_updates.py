@@ -8,7 +8,8 @@ has of its own. The twins' module loads with the first edit.
 from __future__ import annotations
 
 import typing
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 _MARK = "_opal_twin_follows"
@@ -32,22 +33,28 @@ def attach(group: Any) -> None:
 _running = False
 
 
+@contextmanager
+def one_edit(settings: Any, context: Any = None) -> Iterator[None]:
+    """What is set while it lasts is one edit: the twin of what owns the settings follows once, at its end."""
+    global _running
+    if _running:
+        yield
+        return
+    _running = True
+    try:
+        yield
+    finally:
+        _running = False
+    from . import twins
+
+    twins.follow(settings, context)
+
+
 def _both(own: Callable[[Any, Any], None] | None) -> Callable[[Any, Any], None]:
     def update(settings: Any, context: Any) -> None:
         # A callback that fills in other settings (a species sets a curve of hundreds of points) makes one edit, not hundreds.
-        global _running
-        if _running:
+        with one_edit(settings, context):
             if own is not None:
                 own(settings, context)
-            return
-        _running = True
-        try:
-            if own is not None:
-                own(settings, context)
-        finally:
-            _running = False
-        from . import twins
-
-        twins.follow(settings)
 
     return update

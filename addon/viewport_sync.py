@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from opal_kernels.scene import Scene
 
-from . import report
+from . import report, units
 from .identity import key_of
 from .nodes import has_volume
 from .translate.instances import Group
@@ -239,8 +239,8 @@ class SceneSync:
 
 
 def _name_of(depsgraph: Any) -> tuple:
-    """Whose picture it is."""
-    return key_of(depsgraph.scene), depsgraph.view_layer.name
+    """Whose picture it is, and how long its units are: all that is measured by the metre depends on that."""
+    return key_of(depsgraph.scene), depsgraph.view_layer.name, units.metres_per_unit(depsgraph.scene)
 
 
 def _structure(groups: list[Group], meshes: list[int]) -> tuple:

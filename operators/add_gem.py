@@ -8,6 +8,7 @@ import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
 
+from ..addon import units
 from ..addon.presets import species_items
 from . import gem_object
 
@@ -57,8 +58,8 @@ class OPAL_OT_add_gem(bpy.types.Operator, AddObjectHelper):
     size: FloatProperty(
         name="Width",
         description="Width of the stone at the girdle",
-        default=0.0065,
-        min=1e-5,
+        default=gem_object.USUAL_WIDTH,
+        min=1e-9,
         soft_max=0.1,
         subtype="DISTANCE",
         precision=5,
@@ -100,16 +101,18 @@ class OPAL_OT_add_gem(bpy.types.Operator, AddObjectHelper):
 
         if not self.properties.is_property_set("species"):
             self.species = "DIAMOND"
+        metres = units.metres_per_unit(context.scene)
+        gem_object.take_usual_width(self, metres)
         cut = CUTS[self.cut]
         for name, usual in cut.defaults.items():
             if not self.properties.is_property_set(name):
                 setattr(self, name, usual)
         try:
-            stone = cut.build(**{name: getattr(self, name) for name in cut.defaults}).scaled(self.size)
+            stone = cut.build(**{name: getattr(self, name) for name in cut.defaults}).scaled(self.size * metres)
         except ValueError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        mesh = gem_object.mesh_from_stone(stone, f"{cut.label} {gem_object.label_of(self.species)}", cut.smooth)
+        mesh = gem_object.mesh_from_stone(stone, f"{cut.label} {gem_object.label_of(self.species)}", cut.smooth, metres)
         mesh.materials.append(gem_object.gem_material(self.species))
         object_data_add(context, mesh, operator=self)
         facets = "" if cut.smooth else f"{stone.facet_count()} facets, "

@@ -6,7 +6,12 @@ from typing import Any
 import bpy
 from bpy.props import EnumProperty, FloatProperty
 
-from ..addon import rainbow_presets
+from ..addon import rainbow_presets, units
+
+# How far away the curtain stands and how thick it is where nobody says otherwise, m.
+_USUAL = 150.0
+# Height of an eye, m.
+_EYE = 1.7
 
 
 class OPAL_OT_add_rain(bpy.types.Operator):
@@ -21,16 +26,16 @@ class OPAL_OT_add_rain(bpy.types.Operator):
     distance: FloatProperty(
         name="Distance",
         description="From the camera to the curtain",
-        default=150.0,
-        min=0.01,
+        default=_USUAL,
+        min=1e-6,
         soft_max=5000.0,
         subtype="DISTANCE",
     )
     depth: FloatProperty(
         name="Depth",
         description="How thick the curtain is",
-        default=150.0,
-        min=0.001,
+        default=_USUAL,
+        min=1e-6,
         soft_max=5000.0,
         subtype="DISTANCE",
     )
@@ -56,9 +61,13 @@ class OPAL_OT_add_rain(bpy.types.Operator):
         from ..addon.translate.rainbow import drops_of
 
         scene = context.scene
+        metres = units.metres_per_unit(scene)
+        for name in ("distance", "depth"):
+            if not self.properties.is_property_set(name):
+                setattr(self, name, _USUAL / metres)
         suns, strongest = _suns(context)
-        eye, view = _camera(scene)
-        material = _material(self.preset, -np.log1p(-self.share) / self.depth)
+        eye, view = _camera(scene, metres)
+        material = _material(self.preset, -np.log1p(-self.share) / (self.depth * metres))
         arcs = droplets.arcs(drops_of(material.opal.rainbow))
         # A corona is seen round the sun: then the curtain stands where the camera looks.
         curtain = curtain_for([] if arcs.corona else suns, view, eye, self.distance, self.depth)
@@ -104,15 +113,15 @@ def _suns(context: bpy.types.Context) -> tuple[list[Any], float]:
     return [axis / np.linalg.norm(axis) for axis in columns], max((o.data.energy for o in suns), default=0.0)
 
 
-def _camera(scene: bpy.types.Scene) -> tuple[Any, Any]:
-    """Where the eye is, and how it looks (None without a camera)."""
+def _camera(scene: bpy.types.Scene, metres: float) -> tuple[Any, Any]:
+    """Where the eye is, in units of so many metres, and how it looks (None without a camera)."""
     from opal_kernels.optics.rainbow import sight
 
     from ..addon.translate.camera import camera_from_object
 
     camera = scene.camera
     if camera is None or camera.type != "CAMERA":
-        return (0.0, 0.0, 1.7), None
+        return (0.0, 0.0, _EYE / metres), None
     from ..addon.settings import frame_of
 
     frame = frame_of(scene.render)

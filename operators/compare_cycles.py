@@ -66,7 +66,7 @@ class OPAL_OT_compare_cycles(bpy.types.Operator, RendersFrame):
 
         scene = context.scene
         try:
-            edited = comparison.bring_twins_up_to_date()
+            edited = comparison.bring_twins_up_to_date(scene)
             with Changed() as changed:
                 if not self.use_scene_settings:
                     # A denoiser shifts means: what is compared is what the engines have rendered.

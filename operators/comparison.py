@@ -101,14 +101,14 @@ def sentence(result: dict[str, Any]) -> str:
     return text + f"; Opal {result['seconds']['opal']:.1f} s, Cycles {result['seconds']['cycles']:.1f} s"
 
 
-def bring_twins_up_to_date() -> list[str]:
-    """Makes every twin follow; names of those that were edited by hand."""
+def bring_twins_up_to_date(scene: Any) -> list[str]:
+    """Makes every twin follow, in a scene's units; names of those that were edited by hand."""
     from ..addon import twins
 
     edited = []
     for owner in twins.worlds_and_materials():
         function = twins.update_world if isinstance(owner, bpy.types.World) else twins.update
-        if function(owner) is twins.Result.EDITED:
+        if function(owner, scene=scene) is twins.Result.EDITED:
             edited.append(owner.name_full)
     return edited
 

@@ -27,8 +27,10 @@ def replaced(scene: Any, dim_camera: bool) -> Iterator[None]:
     dim_camera : bool
         Media dim what the camera sees through them in the base; if not, the picture has to be multiplied by the transmittance.
     """
+    from ..addon import units
     from ..addon.twins import trees
 
+    metres = units.metres_per_unit(scene)
     made: list[_Added] = []
     try:
         for material in bpy.data.materials:
@@ -36,10 +38,10 @@ def replaced(scene: Any, dim_camera: bool) -> Iterator[None]:
             if opal.kind == "GEM":
                 made.append(_add(material, trees.blocker()))
             elif opal.kind in {"MEDIUM", "RAINBOW"}:
-                made.append(_add(material, trees.absorber(opal, camera_passes=not dim_camera)))
+                made.append(_add(material, trees.absorber(opal, camera_passes=not dim_camera, metres=metres)))
         world = scene.world
         if world is not None and world.opal.kind in {"MEDIUM", "RAINBOW"}:
-            made.append(_add_to_world(world, trees.absorber(world.opal, world=True, camera_passes=not dim_camera)))
+            made.append(_add_to_world(world, trees.absorber(world.opal, world=True, camera_passes=not dim_camera, metres=metres)))
         yield
     finally:
         for added in made:

@@ -16,7 +16,17 @@ if TYPE_CHECKING:
 CUSTOM = "CUSTOM"
 
 
-def mesh_from_stone(stone: Stone, name: str, smooth: Sequence[str] = ()) -> bpy.types.Mesh:
+# Width of a stone that nobody says otherwise of, m: a carat of diamond.
+USUAL_WIDTH = 0.0065
+
+
+def take_usual_width(operator: bpy.types.Operator, metres: float) -> None:
+    """The width of a stone whose `size`, in units, was not set: the same whatever a unit is."""
+    if not operator.properties.is_property_set("size"):
+        operator.size = USUAL_WIDTH / metres
+
+
+def mesh_from_stone(stone: Stone, name: str, smooth: Sequence[str] = (), metres: float = 1.0) -> bpy.types.Mesh:
     """A mesh of planar polygons, as they are cut.
 
     Parameters
@@ -27,9 +37,11 @@ def mesh_from_stone(stone: Stone, name: str, smooth: Sequence[str] = ()) -> bpy.
         Of the mesh.
     smooth : sequence of str
         Names of facets that stand for a curved surface.
+    metres : float
+        Per unit (`units`), which the mesh is in.
     """
     mesh = bpy.data.meshes.new(name)
-    mesh.from_pydata(stone.solid.vertices.tolist(), [], [list(face) for face in stone.solid.faces])
+    mesh.from_pydata((stone.solid.vertices / metres).tolist(), [], [list(face) for face in stone.solid.faces])
     mesh.polygons.foreach_set("use_smooth", [facet in smooth for facet in stone.names])
     mesh.update()
     return mesh

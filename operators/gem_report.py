@@ -9,7 +9,7 @@ from typing import Any
 import bpy
 from bpy.props import FloatProperty, IntProperty, StringProperty
 
-from ..addon import presets
+from ..addon import presets, units
 from . import image_files
 from .job import Aside, Steps
 from .long_job import LongJob
@@ -67,7 +67,7 @@ class OPAL_OT_gem_report(bpy.types.Operator, LongJob):
 
         obj = context.active_object
         try:
-            stone, notes = _stone_of(obj, context.evaluated_depsgraph_get())
+            stone, notes = _stone_of(obj, context.evaluated_depsgraph_get(), units.metres_per_unit(context.scene))
         except ValueError as error:
             self.report({"ERROR"}, f"“{obj.name}”: {error}")
             return {"CANCELLED"}
@@ -98,8 +98,14 @@ class OPAL_OT_gem_report(bpy.types.Operator, LongJob):
         return {"FINISHED"}
 
 
-def _stone_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> tuple[Any, list[str]]:
-    """An object as the `opal_kernels.gem_report.FacetedStone` it is at its scale, and what that leaves out; ValueError says what is wrong."""
+def _stone_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, metres: float) -> tuple[Any, list[str]]:
+    """An object as the `opal_kernels.gem_report.FacetedStone` it is at its scale, and what that leaves out; ValueError says what is wrong.
+
+    Parameters
+    ----------
+    metres : float
+        Per unit.
+    """
     import numpy as np
     from opal_kernels import gem as gems
     from opal_kernels.gem_report import FacetedStone
@@ -122,11 +128,11 @@ def _stone_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> tuple[An
     if presets.species_of(gem) == presets.CUSTOM and (sentence := gems.refusal(presets.settings_of(gem))):
         raise ValueError(sentence)
     scale = np.array(evaluated.matrix_world.to_scale())
-    positions = arrays.positions.astype(float) * scale
+    positions = arrays.positions.astype(float) * scale * metres
     if not np.isfinite(positions).all() or not (scale != 0).all():
         raise ValueError("the stone is scaled to nothing or has corners that are not finite")
     triangles = arrays.triangles if scale.prod() > 0 else arrays.triangles[:, ::-1]
-    index, absorption = gem_spectra(gem)
+    index, absorption = gem_spectra(gem, metres)
     others = [m.name if m else "none" for m in used if m != material]
     notes = _left_out(material, others, smooth=arrays.corner_normals is not None)
     return FacetedStone(positions, triangles, index, absorption), notes

@@ -8,6 +8,7 @@ from bpy.props import EnumProperty, FloatProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 from bpy_extras.object_utils import object_data_add
 
+from ..addon import units
 from ..addon.presets import species_items
 from . import gem_object
 
@@ -30,8 +31,8 @@ class OPAL_OT_import_gemcad(bpy.types.Operator, ImportHelper):
     size: FloatProperty(
         name="Width",
         description="Width of the stone at the girdle",
-        default=0.0065,
-        min=1e-5,
+        default=gem_object.USUAL_WIDTH,
+        min=1e-9,
         soft_max=0.1,
         subtype="DISTANCE",
         precision=5,
@@ -55,8 +56,10 @@ class OPAL_OT_import_gemcad(bpy.types.Operator, ImportHelper):
         except gemcad.GemCadError as error:
             self.report({"ERROR"}, f"{path.name}: {error}")
             return {"CANCELLED"}
-        stone = as_designed.scaled(self.size)
-        mesh = gem_object.mesh_from_stone(stone, path.stem)
+        metres = units.metres_per_unit(context.scene)
+        gem_object.take_usual_width(self, metres)
+        stone = as_designed.scaled(self.size * metres)
+        mesh = gem_object.mesh_from_stone(stone, path.stem, metres=metres)
         index = design.refractive_index if self.species == gem_object.CUSTOM and design.refractive_index else None
         mesh.materials.append(gem_object.gem_material(self.species, index))
         object_data_add(context, mesh)

@@ -53,7 +53,7 @@ class OPAL_OT_update_twins(bpy.types.Operator):
         self.results = {}
         for owner in self._owners(context):
             function = twins.update_world if isinstance(owner, bpy.types.World) else twins.update
-            self.results[owner.name_full] = function(owner, self.overwrite)
+            self.results[owner.name_full] = function(owner, self.overwrite, context.scene)
         updated, edited = self._with(twins.Result.UPDATED), self._with(twins.Result.EDITED)
         sentence = f"{len(updated)} twins follow Opal's settings"
         if edited:

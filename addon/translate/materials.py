@@ -12,7 +12,7 @@ from opal_kernels.descriptions import Fresnel, Gem, MaterialFlag, wavelengths
 from opal_kernels.optics import species
 from opal_kernels.scene import Scene
 
-from .. import presets
+from .. import presets, units
 from ..identity import Named, key_of
 from ..nodes import compile_material, compile_missing, compile_volume, default_volume, has_surface, has_volume
 from ..report import Report
@@ -64,17 +64,17 @@ class Materials:
         Makes media of rainbows.
     spectra : Spectra
         Takes the gems' tables.
-    absorption_scale : float
-        Factor on the absorption of gems: below 1 they look like smaller stones.
     """
 
-    def __init__(
-        self, scene: Scene, context: Any, report: Report, rain: rainbow.Rain, spectra: Spectra, absorption_scale: float = 1.0
-    ) -> None:
+    def __init__(self, scene: Scene, context: Any, report: Report, rain: rainbow.Rain, spectra: Spectra) -> None:
         self._scene, self._context, self._report, self._rain, self._spectra = scene, context, report, rain, spectra
-        self._absorption_scale = absorption_scale
+        self._lengths = units.Lengths()
         self.volumes = Volumes(scene, report.add)
         self._known: dict[tuple[Any, int, bool], _Known] = {}
+
+    def begin(self, lengths: units.Lengths) -> None:
+        """How long a unit is in what is read from now on."""
+        self._lengths, self.volumes.metres = lengths, lengths.media
 
     def number(self, material: Any, body: Body | None = None) -> int:
         """The kernels' number of an evaluated material; None gives what Blender shows without one.
@@ -117,7 +117,7 @@ class Materials:
         for old in [known for key, known in self._known.items() if key[0] == mine]:
             if not old.in_place or fills(material) or material.opal.kind != old.kind:
                 raise NeedsRebuild
-            if old.kind == "GEM" and _gem_content(material.opal.gem, _gem_tables(material.opal.gem, self._absorption_scale)) == old.content:
+            if old.kind == "GEM" and _gem_content(material.opal.gem, _gem_tables(material.opal.gem, self._lengths)) == old.content:
                 continue
             self._report.forget(Named(material))
             new = _Known(old.number, old.kind)
@@ -190,9 +190,9 @@ class Materials:
 
     def _gem(self, name: str, settings: Any, body: Body | None, known: _Known) -> dict[str, Any]:
         gem = settings.gem
-        for sentence in _gem_refusals(gem):
+        for sentence in _gem_refusals(gem, self._lengths.settings):
             self._report.add(name, sentence)
-        index, absorption = tables = _gem_tables(gem, self._absorption_scale)
+        index, absorption = tables = _gem_tables(gem, self._lengths)
         known.spectra = [self._spectra.take(table) for table in (index, absorption) if table is not None]
         known.content = _gem_content(gem, tables)
         description = Gem(
@@ -211,11 +211,11 @@ def program_content(compiled: Any) -> tuple:
     return compiled.code.tobytes(), compiled.constants.tobytes(), compiled.n_registers
 
 
-def _gem_refusals(gem: Any) -> list[str]:
-    """Sentences on numbers that no gem can have, and on a species that there is not."""
+def _gem_refusals(gem: Any, metres: float) -> list[str]:
+    """Sentences on numbers that no gem can have, and on a species that there is not; `metres` per unit of its settings."""
     if presets.species_of(gem) != presets.CUSTOM:
         return []
-    settings = presets.settings_of(gem)
+    settings = presets.settings_of(gem, metres)
     sentences = ["Its species is none that this version of Opal knows; it is rendered by its numbers."] if presets.is_unknown(gem) else []
     if sentence := gems.refusal(settings):
         sentences.append(sentence + " The gem is rendered with an index of 1.5.")
@@ -224,12 +224,12 @@ def _gem_refusals(gem: Any) -> list[str]:
     return sentences
 
 
-def _gem_tables(gem: Any, absorption_scale: float) -> tuple[Any, Any]:
-    """`gem_spectra` as rendered: an index of 1.5 for one that cannot be, and the absorption scaled."""
-    index, absorption = gem_spectra(gem)
+def _gem_tables(gem: Any, lengths: units.Lengths) -> tuple[Any, Any]:
+    """`gem_spectra` as rendered: an index of 1.5 for one that cannot be, and the absorption per unit."""
+    index, absorption = gem_spectra(gem, lengths.settings)
     if presets.species_of(gem) == presets.CUSTOM and gems.refusal(presets.settings_of(gem)):
         index[:] = 1.5
-    return index, None if absorption is None else absorption * absorption_scale
+    return index, None if absorption is None else absorption * lengths.stones
 
 
 def _gem_content(gem: Any, tables: tuple[Any, Any]) -> tuple:
@@ -254,11 +254,18 @@ def bounds_a_medium(material: Any) -> bool:
     return kind in {"MEDIUM", "RAINBOW"} or (kind == "SURFACE" and has_volume(material) and not has_surface(material))
 
 
-def gem_spectra(gem: Any) -> tuple[Any, Any]:
-    """n and σa (1/m, or None) at 360 ... 830 nm of a gem: the species' own tables, or what its numbers say."""
+def gem_spectra(gem: Any, metres: float = 1.0) -> tuple[Any, Any]:
+    """n and σa (1/m, or None) at 360 ... 830 nm of a gem: the species' own tables, or what its numbers say.
+
+    Parameters
+    ----------
+    gem : OpalGemProperties
+    metres : float
+        Per unit of its settings (`units`).
+    """
     name = presets.species_of(gem)
     if name == presets.CUSTOM:
-        settings = presets.settings_of(gem)
+        settings = presets.settings_of(gem, metres)
         return gems.index(settings), None if gems.absorption_refusal(settings) else gems.absorption(settings)
     index, absorption = species.index(name, wavelengths()), species.absorption(name, wavelengths())
     return index, absorption if absorption.any() else None

@@ -17,7 +17,7 @@ from .. import rainbow_tables
 from ..identity import Named
 from ..report import Report
 
-# Height over which rain thins out where the world does not say: of the order of a shower cloud's base.
+# Metres of height over which rain thins out where the world does not say: of the order of a shower cloud's base.
 RAIN_HEIGHT = 1000.0
 
 
@@ -76,12 +76,13 @@ class Rain:
     def __init__(self, scene: Scene, report: Report, stage: Callable[..., None]) -> None:
         self._scene, self._report, self._stage = scene, report, stage
         self._lights: list[Light] = []
+        self._metres = 1.0
         self._regions: list[rain_places.Box | rain_places.Air] = []
         self.present = False
 
-    def begin(self, lights: Sequence[Light]) -> None:
-        """The lamps of the scene, as they were read."""
-        self._lights = list(lights)
+    def begin(self, lights: Sequence[Light], metres: float) -> None:
+        """The lamps of the scene, as they were read, and metres per unit."""
+        self._lights, self._metres = list(lights), metres
 
     def stands(self, materials: Sequence[Any], box: tuple[np.ndarray, np.ndarray], transforms: np.ndarray) -> None:
         """Where the drops of a closed body are, if any of its materials are drops: its box, and box to world of its copies."""
@@ -103,7 +104,7 @@ class Rain:
             If the theory cannot hold the drops, in one sentence.
         """
         drops, phase = self.phase(rainbow)
-        medium = self._scene.add_medium(rainbow.extinction * drops.extinction_factor, 1.0, phase)
+        medium = self._scene.add_medium(self._metres * rainbow.extinction * drops.extinction_factor, 1.0, phase)
         self._scene.set_medium_layer(medium, MediumLayer.RAINBOW)
         return medium
 
@@ -112,16 +113,17 @@ class Rain:
         settings = world.opal
         height = settings.scale_height
         if not height > 0.0:
-            height = RAIN_HEIGHT
+            height = RAIN_HEIGHT / self._metres
             self._report.add(
                 Named(world),
                 f"Rain without a scale height would let no sun through: it is rendered with one of {RAIN_HEIGHT:g} m.",
                 "Scale Height",
             )
         drops, phase = self.phase(settings.rainbow)
-        self._regions.append(rain_places.Air(droplets.arcs(drops), settings.rainbow.extinction, settings.base_height))
+        extinction = self._metres * settings.rainbow.extinction
+        self._regions.append(rain_places.Air(droplets.arcs(drops), extinction, settings.base_height))
         medium = self._scene.add_medium(
-            settings.rainbow.extinction * drops.extinction_factor,
+            extinction * drops.extinction_factor,
             1.0,
             phase,
             density=Density.HEIGHT,

@@ -16,6 +16,7 @@ from opal_kernels.descriptions import Attribute, Camera, Light, World
 from opal_kernels.mesh_bodies import NO_GEM
 from opal_kernels.scene import Scene
 
+from .. import units
 from ..identity import Named, key_of
 from ..report import Report
 from .gem_meshes import mend_gem_mesh
@@ -28,9 +29,6 @@ from .rainbow import Rain
 from .spectra import Spectra
 from .volumes import Body
 from .world import add_world_medium, world_from_scene
-
-# A stone of 6.5 mm, one carat of diamond, for the ball of 2 m in Blender's preview.
-_PREVIEW_ABSORPTION = 0.0065 / 2.0
 
 
 @dataclass
@@ -72,7 +70,7 @@ class SceneBuilder:
     stage : callable
         Called with a few words before each step, and with the fraction done in long ones; may raise `stopping.Stopped`.
     preview : bool
-        Gems absorb as stones of usual size do, not as the boulders that Blender's preview shows.
+        It is one of Blender's previews of a material (`units.of_preview`).
     map_width : int, optional
         Pixels across the world's importance map, at most; it says where samples go, not how bright anything is.
     undisturbed : callable
@@ -93,13 +91,13 @@ class SceneBuilder:
     ) -> None:
         self._report, self._stage, self._undisturbed, self._aside = report, stage, undisturbed, aside
         self._stopping, self._reading = False, ""
-        self._map_width = map_width
+        self._map_width, self._preview = map_width, preview
         self.scene = Scene(threads=threads)
         self.spectra = Spectra(self.scene)
         self._lamp_spectra: list[int] = []
         self.context = NodeContext(self.scene, report)
         self.rain = Rain(self.scene, report, stage)
-        self.materials = Materials(self.scene, self.context, report, self.rain, self.spectra, _PREVIEW_ABSORPTION if preview else 1.0)
+        self.materials = Materials(self.scene, self.context, report, self.rain, self.spectra)
 
     def read(self, depsgraph: Any) -> Snapshot:
         """Reads everything that is seen: instances, lamps, world, materials and meshes."""
@@ -118,7 +116,9 @@ class SceneBuilder:
         """Everything but the meshes, which belong to the depsgraph; names lead to originals."""
         visible = self.read_objects(depsgraph, snapshot)
         self._stage("Reading materials")
-        self.rain.begin([light for light, _ in snapshot.lights])
+        lengths = units.of_preview() if self._preview else units.of_scene(depsgraph.scene)
+        self.materials.begin(lengths)
+        self.rain.begin([light for light, _ in snapshot.lights], lengths.media)
         world = world_of(depsgraph)
         snapshot.world = self.read_world(world)
         if snapshot.world is not None:
@@ -138,21 +138,7 @@ class SceneBuilder:
             self._report.add(name, sentence, lost=True)
         for name, sentence in visible.changes:
             self._report.add(name, sentence)
-        self._note_unit_scale(depsgraph.scene_eval.unit_settings, world, snapshot)
         return visible
-
-    def _note_unit_scale(self, units: Any, world: Any, snapshot: Snapshot) -> None:
-        """Says what lengths mean where the scene says that a unit is no metre, if anything in it is measured by the metre."""
-        measured = (
-            any(snapshot.has_gem) or any(body is not None for body in snapshot.bodies) or (world is not None and world.opal.kind != "NONE")
-        )
-        if measured and units.system != "NONE" and abs(units.scale_length - 1.0) > 1e-6:
-            self._report.add(
-                "",
-                f"the scene's unit is {units.scale_length:g} m, and Opal, as Cycles, takes it for 1 m: what stones absorb by their species "
-                "or a curve, and what media and rain take away in each metre, they take in each unit",
-                "Unit Scale",
-            )
 
     def before_change(self, call: Callable[[], None]) -> None:
         """Sets what reading once more calls before it adds an image or a spectrum to the kernels' scene."""

@@ -80,10 +80,16 @@ class Volumes:
     scene : Scene
     problem : callable
         `Report.add`.
+
+    Attributes
+    ----------
+    metres : float
+        Per unit: Opal's own settings are by the metre, node trees by the unit.
     """
 
     def __init__(self, scene: Scene, problem: Callable[..., None]) -> None:
         self._scene, self._problem = scene, problem
+        self.metres = 1.0
         self._grids: dict[tuple[int, str, bool], int] = {}
 
     # ---- Grids ----
@@ -148,14 +154,15 @@ class Volumes:
             if not grid:
                 return -1
             fields = {"density": Density.GRID, "density_grid": grid, **fields}
+        by_unit = body.density * self.metres
         emission = emission_of(settings)
         if emission is not None:
-            emission = body.density * emission
+            emission = by_unit * emission
         if emission is not None and settings.emission_grid:
             grid = self._density(body, settings.emission_grid, "Emission Grid")
             emission = emission if grid else None
             fields |= {"emission_density": EmissionDensity.GRID, "emission_density_grid": grid} if grid else {}
-        extinction = body.density * settings.extinction * uplift.reflectance(tuple(settings.extinction_color))
+        extinction = by_unit * settings.extinction * uplift.reflectance(tuple(settings.extinction_color))
         phase = Phase(kind=PhaseKind[settings.phase], anisotropy=settings.anisotropy)
         return self._scene.add_medium(extinction, uplift.reflectance(tuple(settings.albedo)), phase, emission, **fields)
 

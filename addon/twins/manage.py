@@ -13,6 +13,7 @@ from typing import Any
 
 import bpy
 
+from .. import units
 from .plan import Plan, fingerprint
 from .trees import filling, gem
 
@@ -34,13 +35,14 @@ class Result(Enum):
 _default: dict[str, str] = {}
 
 
-def plan_of(owner: Any) -> Plan | None:
-    """The twin's plan of a material or world; None for what has none."""
+def plan_of(owner: Any, scene: Any = None) -> Plan | None:
+    """The twin's plan of a material or world in a scene's units (without one, the context's); None for what has none."""
+    metres = units.here() if scene is None else units.metres_per_unit(scene)
     kind = owner.opal.kind
     if kind == "GEM":
-        return gem(owner.opal.gem)
+        return gem(owner.opal.gem, metres)
     if kind in {"MEDIUM", "RAINBOW"}:
-        return filling(owner.opal, isinstance(owner, bpy.types.World))
+        return filling(owner.opal, isinstance(owner, bpy.types.World), metres)
     return None
 
 
@@ -49,7 +51,7 @@ def is_managed(owner: Any) -> bool:
     return owner.node_tree is not None and owner.get(KEY) == fingerprint(owner.node_tree)
 
 
-def update(material: Any, overwrite: bool = False) -> Result:
+def update(material: Any, overwrite: bool = False, scene: Any = None) -> Result:
     """Makes a material's twin follow its settings.
 
     Parameters
@@ -57,8 +59,10 @@ def update(material: Any, overwrite: bool = False) -> Result:
     material : bpy.types.Material
     overwrite : bool
         Also where the tree was made or edited by hand.
+    scene : bpy.types.Scene, optional
+        Whose units the twin's coefficients are by; the context's without one.
     """
-    plan = plan_of(material)
+    plan = plan_of(material, scene)
     if plan is None:
         return Result.NONE
     if material.library is not None or material.override_library is not None:
@@ -71,7 +75,7 @@ def update(material: Any, overwrite: bool = False) -> Result:
     return Result.UPDATED
 
 
-def update_world(world: Any, overwrite: bool = False) -> Result:
+def update_world(world: Any, overwrite: bool = False, scene: Any = None) -> Result:
     """The same of a world: its volume follows, its background stays the artist's."""
     if world.opal.kind == "NONE":
         return Result.NONE
@@ -83,7 +87,7 @@ def update_world(world: Any, overwrite: bool = False) -> Result:
     own = {name: tree.nodes.get(_PREFIX + name) for name in ("Interior",)}
     if volume.is_linked and volume.links[0].from_node != own["Interior"] and not overwrite:
         return Result.EDITED
-    plan = plan_of(world)
+    plan = plan_of(world, scene)
     plan.nodes.pop("Output")
     plan.links = [link for link in plan.links if link[2] != "Output"]
     _drop_others(tree, plan, [node for node in tree.nodes if node.name.startswith(_PREFIX)], _PREFIX)
@@ -99,15 +103,16 @@ def update_world(world: Any, overwrite: bool = False) -> Result:
 _PREFIX = "Opal "
 
 
-def follow(settings: Any, _context: Any = None) -> None:
+def follow(settings: Any, context: Any = None) -> None:
     """Update callback of every setting that a twin shows: settings of a material or world."""
     owner = settings.id_data
     if owner.is_evaluated or owner.library is not None:
         return
+    scene = getattr(context, "scene", None)
     if isinstance(owner, bpy.types.World):
-        update_world(owner)
+        update_world(owner, scene=scene)
     elif isinstance(owner, bpy.types.Material):
-        update(owner)
+        update(owner, scene=scene)
 
 
 def worlds_and_materials() -> Iterator[Any]:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What each kind of material is in Cycles' nodes, as plans.
 
-Coefficients are those that Opal renders: extinction and albedo of media, 1/m; a gem's absorption -ln(colour) / depth. What Cycles
-has no word for becomes its nearest: one index of refraction (at the D line) for a gem, and for drops the Henyey-Greenstein
+Coefficients are those that Opal renders, by the unit, as Cycles takes them: extinction and albedo of media; a gem's absorption
+-ln(colour) / depth. `metres`, wherever it is asked for, are metres per unit (`units`). What Cycles has no word for becomes its nearest: one index of refraction (at the D line) for a gem, and for drops the Henyey-Greenstein
 function of their mean cosine.
 """
 
@@ -18,11 +18,11 @@ from .plan import Plan
 # Mean cosine of what water drops much larger than a wavelength scatter: 0.87 with the half that diffraction sends straight on
 # (van de Hulst, "Light Scattering by Small Particles", 1957, section 10.62), 0.74 of refracted and reflected light alone.
 _DROPS_WITH_DIFFRACTION, _DROPS = 0.87, 0.74
-# No coefficient needs to be larger: light is gone in a micrometre.
+# No coefficient, 1/m, needs to be larger: light is gone in a micrometre.
 _LARGEST = 1e6
 
 
-def gem(settings: Any) -> Plan:
+def gem(settings: Any, metres: float = 1.0) -> Plan:
     """Glass of the stone's index at the D line, filled with its absorption.
 
     Parameters
@@ -35,14 +35,27 @@ def gem(settings: Any) -> Plan:
     plan.add("Boundary", "ShaderNodeBsdfGlass", 1, Color=(1, 1, 1, 1), Roughness=settings.roughness, IOR=index)
     plan.add("Output", "ShaderNodeOutputMaterial", 3)
     plan.join("Boundary", 0, "Output", "Surface")
-    absorption = [min(_LARGEST, -math.log(max(c, 1e-6)) / settings.absorption_depth) for c in settings.absorption_color]
+    absorption = _absorption(settings, metres)
     if max(absorption) > 0:
         _coefficients(plan, absorption, (0, 0, 0))
         plan.join("Interior", 0, "Output", "Volume")
     return plan
 
 
-def filling(opal: Any, world: bool = False) -> Plan:
+def _absorption(settings: Any, metres: float) -> list[float]:
+    """-ln(colour) / depth, by channel: of the color set, or of what white light becomes along the usual depth of a stone's curve."""
+    sigma = presets.absorption_by_curve(settings)
+    tint, depth = settings.absorption_color, settings.absorption_depth
+    if sigma is not None:
+        from opal_kernels import gem as gems
+
+        if not sigma.any():
+            return [0.0, 0.0, 0.0]
+        tint, depth = gems.tint_along(sigma, gems.USUAL_DEPTH), gems.USUAL_DEPTH / metres
+    return [min(_LARGEST * metres, -math.log(max(c, 1e-6)) / depth) for c in tint]
+
+
+def filling(opal: Any, world: bool = False, metres: float = 1.0) -> Plan:
     """Medium or rain as a volume.
 
     Parameters
@@ -52,11 +65,11 @@ def filling(opal: Any, world: bool = False) -> Plan:
     """
     plan = Plan()
     output = plan.add("Output", "ShaderNodeOutputWorld" if world else "ShaderNodeOutputMaterial", 3)
-    extinction, albedo, phase, cosine = coefficients(opal)
+    extinction, albedo, phase, cosine = coefficients(opal, metres)
     scattering = [e * a for e, a in zip(extinction, albedo, strict=True)]
     absorption = [e - s for e, s in zip(extinction, scattering, strict=True)]
-    _coefficients(plan, absorption, scattering, _emission(opal), phase, cosine)
-    density = _density(plan, opal, world)
+    _coefficients(plan, absorption, scattering, _emission(opal, metres), phase, cosine)
+    density = _density(plan, opal, world, metres)
     if density is not None:
         for name in ("Absorption Coefficients", "Scatter Coefficients"):
             _scale(plan, name, density)
@@ -68,7 +81,7 @@ def filling(opal: Any, world: bool = False) -> Plan:
     return plan
 
 
-def absorber(opal: Any, world: bool = False, camera_passes: bool = False) -> Plan:
+def absorber(opal: Any, world: bool = False, camera_passes: bool = False, metres: float = 1.0) -> Plan:
     """What takes the same light away as medium or rain and scatters none.
 
     Parameters
@@ -78,8 +91,8 @@ def absorber(opal: Any, world: bool = False, camera_passes: bool = False) -> Pla
     """
     plan = Plan()
     output = plan.add("Output", "ShaderNodeOutputWorld" if world else "ShaderNodeOutputMaterial", 3)
-    _coefficients(plan, coefficients(opal)[0], (0, 0, 0))
-    density = _density(plan, opal, world)
+    _coefficients(plan, coefficients(opal, metres)[0], (0, 0, 0))
+    density = _density(plan, opal, world, metres)
     if camera_passes:
         plan.add("Ray", "ShaderNodeLightPath", -2)
         plan.add("Not Camera", "ShaderNodeMath", -1, {"operation": "SUBTRACT"})
@@ -113,21 +126,21 @@ def blocker() -> Plan:
     return plan
 
 
-def coefficients(opal: Any) -> tuple[Sequence[float], Sequence[float], str, float]:
-    """Extinction (1/m, by channel), albedo, Cycles' phase function and mean cosine."""
+def coefficients(opal: Any, metres: float = 1.0) -> tuple[Sequence[float], Sequence[float], str, float]:
+    """Extinction (by the unit and by channel), albedo, Cycles' phase function and mean cosine."""
     if opal.kind == "RAINBOW":
         rain = opal.rainbow
         # With diffraction drops take twice the light that falls on them (van de Hulst, section 8.22).
         factor, cosine = (2.0, _DROPS_WITH_DIFFRACTION) if rain.diffraction else (1.0, _DROPS)
-        return (rain.extinction * factor,) * 3, (1.0, 1.0, 1.0), "HENYEY_GREENSTEIN", cosine
+        return (metres * rain.extinction * factor,) * 3, (1.0, 1.0, 1.0), "HENYEY_GREENSTEIN", cosine
     medium = opal.medium
-    extinction = [medium.extinction * c for c in medium.extinction_color]
+    extinction = [metres * medium.extinction * c for c in medium.extinction_color]
     if medium.phase == "RAYLEIGH":
         return extinction, medium.albedo, "RAYLEIGH", 0.0
     return extinction, medium.albedo, "HENYEY_GREENSTEIN", medium.anisotropy if medium.phase == "HENYEY_GREENSTEIN" else 0.0
 
 
-def _emission(opal: Any) -> Sequence[float]:
+def _emission(opal: Any, metres: float) -> Sequence[float]:
     if opal.kind != "MEDIUM" or opal.medium.emission_strength <= 0:
         return (0.0, 0.0, 0.0)
     medium = opal.medium
@@ -136,7 +149,7 @@ def _emission(opal: Any) -> Sequence[float]:
         from opal_kernels.optics import colour, illuminants
 
         color = [max(0.0, float(c)) for c in colour.rec709(illuminants.blackbody(medium.emission_temperature))]
-    return [c * medium.emission_strength for c in color]
+    return [metres * c * medium.emission_strength for c in color]
 
 
 def _coefficients(
@@ -171,9 +184,9 @@ def _scale(plan: Plan, socket: str, source: tuple[str, str | int]) -> None:
     plan.join(name, 0, "Interior", socket)
 
 
-def _density(plan: Plan, opal: Any, world: bool) -> tuple[str, str | int] | None:
+def _density(plan: Plan, opal: Any, world: bool, metres: float) -> tuple[str, str | int] | None:
     """The density field as an output of some node; None where it is 1 everywhere."""
-    if world and (height := _scale_height(opal)) > 0:
+    if world and (height := _scale_height(opal, metres)) > 0:
         return _height(plan, height, opal.base_height)
     if opal.kind != "MEDIUM" or opal.medium.density == "HOMOGENEOUS":
         return None
@@ -201,12 +214,12 @@ def _noise(plan: Plan, medium: Any, world: bool) -> tuple[str, int]:
     return "Contrast", 0
 
 
-def _scale_height(opal: Any) -> float:
-    """The world's scale height as it is rendered: rain that says none has one (translate/rainbow.py)."""
+def _scale_height(opal: Any, metres: float) -> float:
+    """The world's scale height as it is rendered, in units: rain that says none has one (translate/rainbow.py)."""
     if opal.kind == "RAINBOW" and opal.scale_height <= 0:
         from ..translate.rainbow import RAIN_HEIGHT
 
-        return RAIN_HEIGHT
+        return RAIN_HEIGHT / metres
     return opal.scale_height
 
 

@@ -15,6 +15,8 @@ import numpy as np
 from .descriptions import wavelengths
 from .optics import colour, dispersion, species, uplift
 
+# Metres of stone whose colour is shown where nobody says otherwise.
+USUAL_DEPTH = 0.005
 # An index above this is no solid's; it would only hide a slip of the hand.
 HIGHEST_INDEX = 10.0
 # Where the pole of the infrared term of a form that is linear in λ² is put, µm²: far enough to be straight below 1 µm.
@@ -46,7 +48,7 @@ class Settings:
     sellmeier_b: Sequence[float]
     sellmeier_c: Sequence[float]
     absorption_color: Sequence[float] = (1.0, 1.0, 1.0)
-    absorption_depth: float = 0.005
+    absorption_depth: float = USUAL_DEPTH
     absorption_curve: Sequence[tuple[float, float]] | None = None
 
 
@@ -144,7 +146,13 @@ def _read_out(index_function: dispersion.Index) -> ReadOut:
     )
 
 
-def settings_of_species(name: str, depth: float = 0.005) -> Settings:
+def tint_along(sigma: np.ndarray, depth: float) -> tuple[float, float, float]:
+    """Linear Rec.709 in [0, 1] that D65 becomes along `depth` metres of absorption `sigma`, 1/m at 360 ... 830 nm, shape (471,)."""
+    tint = np.clip(colour.rec709(colour.white() * np.exp(-sigma * depth)), 0.0, 1.0)
+    return tuple(float(v) for v in tint)
+
+
+def settings_of_species(name: str, depth: float = USUAL_DEPTH) -> Settings:
     """What the interface shows once a species is chosen.
 
     Parameters
@@ -170,9 +178,8 @@ def settings_of_species(name: str, depth: float = 0.005) -> Settings:
         kind, cauchy = "SELLMEIER", _cauchy_through(exact)
     b, c = _three_terms(row.formula, row.coefficients) or _fitted_terms(exact)
     sigma = species.absorption(name, wavelengths())
-    tint = np.clip(colour.rec709(colour.white() * np.exp(-sigma * depth)), 0.0, 1.0)
     curve = list(zip(wavelengths().tolist(), (1e-3 * sigma).tolist(), strict=True)) if sigma.any() else None
-    return Settings(kind, cauchy, b, c, tuple(float(v) for v in tint), depth, curve)
+    return Settings(kind, cauchy, b, c, tint_along(sigma, depth), depth, curve)
 
 
 def _three_terms(formula: str, coefficients: dict) -> tuple[Sequence[float], Sequence[float]] | None:

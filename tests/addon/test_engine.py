@@ -243,20 +243,6 @@ def test_shadow_catchers_hair_of_particles_and_stereo_are_named_in_the_report(tm
     assert lost == {"Floor": False, "Head": True, "Camera": False}
 
 
-def test_a_unit_that_is_no_metre_is_named_where_stones_are_measured_by_it(tmp_path):
-    scene = stage.scene()
-    stage.camera((0, 0, 5))
-    card = stage.plane()
-    scene.unit_settings.scale_length = 0.001
-    stage.render(tmp_path)
-    assert not stage.problems()
-    stone = bpy.data.materials.new("Stone")
-    stone.opal.kind = "GEM"
-    card.data.materials.append(stone)
-    stage.render(tmp_path)
-    assert any(entry.startswith("Unit Scale: the scene's unit is 0.001 m") for entry in stage.problems()), stage.problems()
-
-
 def test_light_links_of_lamps_that_are_only_there_as_instances_are_kept(tmp_path):
     stage.scene()
     stage.camera((0, 0, 5))

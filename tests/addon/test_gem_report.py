@@ -66,7 +66,7 @@ def test_a_steep_pavilion_is_a_nail_head(opal):
 def left_out(obj):
     bpy.context.view_layer.update()
     operators = importlib.import_module(stage.addon("presets").__package__.removesuffix("addon") + "operators.gem_report")
-    return operators._stone_of(obj, bpy.context.evaluated_depsgraph_get())[1]
+    return operators._stone_of(obj, bpy.context.evaluated_depsgraph_get(), 1.0)[1]
 
 
 def test_what_the_report_leaves_out_is_said_and_nothing_else(opal):
