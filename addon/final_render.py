@@ -23,7 +23,7 @@ from opal_kernels.render import Render
 from opal_kernels.scene import Scene
 
 from . import capture as captures
-from . import empty_result, film_files, main_thread, report, settings, spectral_exr, stopping
+from . import empty_result, film_files, main_thread, report, settings, spectral_exr, stopping, units
 from .identity import Named
 from .render_passes import RenderPass, wanted
 from .stopping import Stopped
@@ -187,7 +187,9 @@ class _FinalRender:
 
     def _tell_of_hidden_gems(self, camera: Any, snapshot: Any) -> None:
         if hidden := clipping.hidden_gems(camera, snapshot):
-            start = bpy.utils.units.to_string(self.scene.unit_settings.system, "LENGTH", camera.clip_start, precision=4)
+            start = bpy.utils.units.to_string(
+                self.scene.unit_settings.system, "LENGTH", camera.clip_start * units.metres_per_unit(self.scene), precision=4
+            )
             self.report.add(Named(self._camera()), clipping.sentence(hidden, start), "Clip Start", lost=True)
 
     def _undisturbed(self, read: Callable[[], Any], depsgraph: Any) -> Any:

@@ -39,6 +39,13 @@ def test_several_are_counted_and_the_unit_is_the_scenes(tmp_path):
     assert "“Stone” and 2 other gems lie nearer" in line and '"' in line.split("than")[1], line
 
 
+def test_the_clip_start_is_said_as_the_interface_shows_it(tmp_path):
+    camera = close_to_a_stone(clip_start=100.0)
+    bpy.context.scene.unit_settings.scale_length = 0.001
+    (line,) = about_the_camera(tmp_path)
+    assert "than 10 cm" in line, (line, camera.data.clip_start)
+
+
 def test_what_the_camera_sees_or_does_not_look_at_is_not_named(tmp_path):
     camera = close_to_a_stone(clip_start=0.001)
     assert about_the_camera(tmp_path) == []
