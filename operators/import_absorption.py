@@ -28,8 +28,12 @@ class OPAL_OT_import_absorption(bpy.types.Operator, ImportHelper):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if _gem(context) is None:
+        gem = _gem(context)
+        if gem is None:
             cls.poll_message_set("The active material is no gem: choose the kind Gem in its Opal panel first")
+            return False
+        if gem.library is not None or gem.override_library is not None:
+            cls.poll_message_set("The material belongs to a library, and with it its curve: make it local first")
             return False
         return True
 

@@ -107,21 +107,39 @@ def test_a_material_preset_makes_the_kind_and_fills_it(kind, name):
     assert {"GEM": opal.gem.species, "MEDIUM": opal.medium.preset, "RAINBOW": opal.rainbow.preset}[kind] == name
 
 
-def test_an_override_takes_a_species_though_its_curve_is_the_library_s(tmp_path):
-    """Blender lets nobody add to a list of an override, which was a traceback."""
+def overridden_ruby(tmp_path):
     stone = bpy.data.materials.new("Ruby")
     stone.opal.kind, stone.opal.gem.species = "GEM", "RUBY"
     bpy.data.libraries.write(str(tmp_path / "stones.blend"), {stone}, fake_user=True)
     bpy.data.materials.remove(stone)
     with bpy.data.libraries.load(str(tmp_path / "stones.blend"), link=True) as (_, wanted):
         wanted.materials = ["Ruby"]
-    mine = wanted.materials[0].override_create()
+    return wanted.materials[0].override_create()
+
+
+def test_an_override_takes_a_species_though_its_curve_is_the_library_s(tmp_path):
+    """Blender lets nobody add to a list of an override, which was a traceback."""
+    mine = overridden_ruby(tmp_path)
     mine.opal.gem.species = "SAPPHIRE_BLUE"
     local = bpy.data.materials.new("Local")
     local.opal.kind, local.opal.gem.species = "GEM", "SAPPHIRE_BLUE"
     spectra = stage.addon("translate.materials").gem_spectra
     for found, expected in zip(spectra(mine.opal.gem), spectra(local.opal.gem), strict=True):
         np.testing.assert_array_equal(found, expected)
+
+
+def test_no_curve_is_imported_into_an_override(tmp_path):
+    """It was a traceback, of a library override whose curve Blender lets nobody add to."""
+    mine = overridden_ruby(tmp_path)
+    obj = stage.plane()
+    obj.data.materials.append(mine)
+    bpy.context.view_layer.objects.active = obj
+    path = tmp_path / "measured.csv"
+    path.write_text("400,0.5\n700,0.5\n")
+    with pytest.raises(RuntimeError, match="belongs to a library"):
+        bpy.ops.opal.import_absorption(filepath=str(path))
+    obj.data.materials[0] = mine.make_local(clear_liboverride=True)
+    assert bpy.ops.opal.import_absorption(filepath=str(path)) == {"FINISHED"}
 
 
 def test_a_material_preset_that_is_none_changes_nothing():
