@@ -18,18 +18,19 @@ import bpy
 import numpy as np
 from opal_kernels import denoise, memory
 from opal_kernels.binding import OpalError
-from opal_kernels.descriptions import Carry, Pass, RenderSettings
+from opal_kernels.descriptions import Camera, Carry, Pass, RenderSettings
 from opal_kernels.render import Render
 from opal_kernels.scene import Scene
 
 from . import capture as captures
-from . import empty_result, film_files, main_thread, report, settings, spectral_exr, stopping, units
+from . import empty_result, film_files, main_thread, render_views, report, settings, spectral_exr, stopping, units
 from .identity import Named
 from .render_passes import RenderPass, wanted
+from .render_views import Place, View
 from .stopping import Stopped
 from .translate import clipping
 from .translate.camera import camera_from_object
-from .translate.scene_builder import SceneBuilder
+from .translate.scene_builder import SceneBuilder, Snapshot
 
 # Blender is shown the picture at most this often, and at once after the first pass.
 _SHOW_SECONDS = 1.0
@@ -78,7 +79,7 @@ class _DoesNotFit(OpalError):
 
 
 class _FinalRender:
-    """One view layer's render."""
+    """One view layer's render, of every view where there are several."""
 
     def __init__(self, engine: Any, depsgraph: Any, found: report.Report) -> None:
         self.engine, self.depsgraph, self.report = engine, depsgraph, found
@@ -88,6 +89,9 @@ class _FinalRender:
         self.passes: list[RenderPass] = [] if engine.is_preview else wanted(depsgraph.view_layer)
         self.denoise = self.scene.opal.denoise and not engine.is_preview
         self.capture = None if engine.is_preview else captures.current()
+        self.views = [View()] if engine.is_preview else render_views.views_of(self.scene.render)
+        self.view = self.views[0]
+        self.cameras: list[Camera] = []
         self.settings = self._settings()
         self.last_shown = self.last_stage = -np.inf
         self.has_result = False
@@ -98,29 +102,42 @@ class _FinalRender:
             kept += [Pass.ALBEDO, Pass.NORMAL]
         if self.capture is not None:
             kept += self.capture.passes
-        result = settings.render_settings(self.scene, self.frame, sorted(set(kept)), self.engine.is_preview)
+        result = settings.render_settings(self.scene, self.frame, sorted(set(kept)), self.engine.is_preview, self.layer)
         if any(number >= Pass.LAYER_BASE for number in kept) and result.photons_carry != Carry.NONE:
             result.photons_carry = Carry.CAUSTICS  # photons that bring ordinary light would not know its layer
         return result
 
     def run(self) -> None:
         self._refuse_what_does_not_fit()
-        with self._translate() as scene, Render(scene, self.settings) as render:
+        with self._translate() as scene:
             width, height = self.frame.region_size
             result = self.engine.begin_result(0, 0, width, height, layer=self.layer.name)
             self.has_result = True
             try:
-                finished = self._look(scene, result) and self._run_passes(render, result)
-                self._note_overlaps(render)
-                cancelled = not (self._write_everything(render, result, denoised=self.denoise and finished) and finished)
-                if self.capture is not None and render.passes_done:
-                    self.capture.take(self.layer.name, render)
-                    self.capture.stopped |= cancelled
-                if not cancelled:
-                    self._write_spectrum(render)
-                    self._write_film(render)
+                for view, camera in zip(self.views, self.cameras, strict=True):
+                    self.view = view
+                    render_views.choose(self.engine, view)
+                    if camera is not self.cameras[0]:
+                        scene.set_camera(camera)
+                        scene.commit()
+                    if not self._run_view(scene, result):
+                        break
             finally:
                 self.engine.end_result(result, cancel=False, do_merge_results=False)
+
+    def _run_view(self, scene: Scene, result: Any) -> bool:
+        """Renders what the scene's camera sees; False if the person stopped it."""
+        with Render(scene, self.settings) as render:
+            finished = self._look(scene, result) and self._run_passes(render, result)
+            self._note_overlaps(render)
+            cancelled = not (self._write_everything(render, result, denoised=self.denoise and finished) and finished)
+            if self.capture is not None and render.passes_done:
+                self.capture.take(self.layer.name, render)
+                self.capture.stopped |= cancelled
+            if not cancelled:
+                self._write_spectrum(render)
+                self._write_film(render)
+        return not cancelled
 
     def _note_overlaps(self, render: Render) -> None:
         if render.statistics["gems_passed_over"]:
@@ -134,7 +151,7 @@ class _FinalRender:
         needed = memory.film_bytes(width * height, self.settings.passes, bins)
         needed += memory.copies_bytes(width * height, bins, self.denoise)
         whole = width * height if self.scene.render.use_crop_to_border else self.frame.width * self.frame.height
-        needed += memory.result_bytes(whole, [row.source for row in self.passes])
+        needed += len(self.views) * memory.result_bytes(whole, [row.source for row in self.passes])
         available = memory.available_bytes()
         if available is not None and needed > _MEMORY_SHARE * available:
             raise _DoesNotFit(
@@ -155,35 +172,57 @@ class _FinalRender:
             self.report, self.settings.threads, self._stage, self.engine.is_preview, undisturbed=self._undisturbed, aside=self._aside
         )
         try:
-            motion = self.settings.motion_blur
-            frame, subframe = self.scene.frame_current, self.scene.frame_subframe
-            opening, middle, close = (frame + subframe + time for time in _shutter(self.scene.render))
-            if motion and middle != frame + subframe:
-                self._go_to(middle)
-            snapshot = builder.read(self.depsgraph)
-            matrix = self._camera_matrix()
-            matrix_ends = []
-            if motion:
-                for time in (opening, close):
-                    self._go_to(time)
-                    builder.read_motion(self.depsgraph, snapshot)
-                    matrix_ends.append(self._camera_matrix())
-                self.engine.frame_set(frame, subframe)
-            camera = camera_from_object(
-                self._camera(),
-                self.scene,
-                self.frame.width,
-                self.frame.height,
-                matrix=matrix,
-                matrix_ends=matrix_ends,
-                report=self.report.add,
-            )
-            builder.rain.look(camera)
-            self._tell_of_hidden_gems(camera, snapshot)
-            return builder.finish(snapshot, camera)
+            snapshot, places = self._read(builder)
+            for view, of_view in zip(self.views, places, strict=True):
+                render_views.choose(self.engine, view)
+                camera = self._camera_at(of_view)
+                builder.rain.look(camera)
+                self._tell_of_hidden_gems(camera, snapshot)
+                self.cameras.append(camera)
+            return builder.finish(snapshot, self.cameras[0])
         except BaseException:
             builder.scene.close()
             raise
+
+    def _read(self, builder: SceneBuilder) -> tuple[Snapshot, list[list[Place]]]:
+        """What is seen, and where each view's camera stands: in the middle of the shutter and, if motion blurs, at its opening and close."""
+        motion = self.settings.motion_blur
+        frame, subframe = self.scene.frame_current, self.scene.frame_subframe
+        opening, middle, close = (frame + subframe + time for time in _shutter(self.scene.render))
+        try:
+            if motion and middle != frame + subframe:
+                self._go_to(middle)
+            snapshot = builder.read(self.depsgraph)
+            places = [[place] for place in self._places()]
+            for time in (opening, close) if motion else ():
+                self._go_to(time)
+                builder.read_motion(self.depsgraph, snapshot)
+                for of_view, place in zip(places, self._places(), strict=True):
+                    of_view.append(place)
+        finally:
+            if motion:
+                self.engine.frame_set(frame, subframe)
+        return snapshot, places
+
+    def _places(self) -> list[Place]:
+        found = []
+        for view in self.views:
+            render_views.choose(self.engine, view)
+            found.append(render_views.place(self.engine, view, self._camera()))
+        return found
+
+    def _camera_at(self, places: list[Place]) -> Camera:
+        """The camera of the chosen view."""
+        return camera_from_object(
+            self._camera(),
+            self.scene,
+            self.frame.width,
+            self.frame.height,
+            matrix=places[0].matrix,
+            matrix_ends=[place.matrix for place in places[1:]],
+            shift_x=places[0].shift_x,
+            report=self.report.add,
+        )
 
     def _tell_of_hidden_gems(self, camera: Any, snapshot: Any) -> None:
         if hidden := clipping.hidden_gems(camera, snapshot):
@@ -218,9 +257,6 @@ class _FinalRender:
             raise OpalError(f"The scene “{self.depsgraph.scene.name}” has no camera to render from.")
         return camera.evaluated_get(self.depsgraph)
 
-    def _camera_matrix(self) -> Any:
-        return self._camera().matrix_world.copy()
-
     def _look(self, scene: Scene, result: Any) -> bool:
         """A coarse picture to look at while a long first pass runs; it is no part of the render. False if the person stopped it."""
         wanted, (width, height) = self.settings, self.frame.region_size
@@ -247,7 +283,7 @@ class _FinalRender:
                 return False
             picture = look.film(Pass.COMBINED)
         rows, columns = (np.minimum(np.arange(n) // edge, m - 1) for n, m in zip((height, width), picture.shape, strict=False))
-        _put(result, "Combined", picture[rows[:, None], columns[None, :]])
+        self._put(result, "Combined", picture[rows[:, None], columns[None, :]])
         self.engine.update_result(result)
         return True
 
@@ -294,8 +330,10 @@ class _FinalRender:
         if limit:
             left = min(left, max(0.0, limit - elapsed)) if left is not None else max(0.0, limit - elapsed)
             fraction = max(fraction, min(1.0, elapsed / limit))
+        fraction = (self.views.index(self.view) + fraction) / len(self.views)
         remaining = f" | Remaining: {_clock(left)}" if left is not None else ""
-        self.engine.update_stats("", f"Pass {number + 1} of {total} | Time: {_clock(elapsed)}{remaining}")
+        which = f"{self.view.name} | " if self.view.name else ""
+        self.engine.update_stats("", f"{which}Pass {number + 1} of {total} | Time: {_clock(elapsed)}{remaining}")
         self.engine.update_progress(fraction)
         if self.capture is not None:
             self.capture.done = fraction
@@ -304,7 +342,7 @@ class _FinalRender:
 
     def _show(self, render: Render, result: Any) -> None:
         self.last_shown = time.monotonic()
-        _put(result, "Combined", render.film(Pass.COMBINED))
+        self._put(result, "Combined", render.film(Pass.COMBINED))
         self.engine.update_result(result)
 
     def _write_everything(self, render: Render, result: Any, denoised: bool) -> bool:
@@ -316,10 +354,13 @@ class _FinalRender:
                 combined = self._denoised(render, combined)
             except Stopped:
                 finished = False
-        _put(result, "Combined", combined)
+        self._put(result, "Combined", combined)
         for row in self.passes:
-            _put(result, row.name, render.film(row.source))
+            self._put(result, row.name, render.film(row.source))
         return finished
+
+    def _put(self, result: Any, name: str, pixels: np.ndarray) -> None:
+        render_views.put(result, self.view, name, np.ascontiguousarray(pixels, np.float32))
 
     def _denoised(self, render: Render, combined: np.ndarray) -> np.ndarray:
         self.engine.update_stats("", "Denoising")
@@ -341,10 +382,9 @@ class _FinalRender:
         if not opal.use_film_file or self.engine.is_preview:
             return
         sums = render.sums()
-        sums.info = film_files.info_of(self.depsgraph.scene.name, self.scene, self.layer.name, self.settings)
-        path = film_files.path_of(self.scene, self.layer.name, sums.passes)
+        sums.info = film_files.info_of(self.depsgraph.scene.name, self.scene, self.layer.name, self.settings, self.view.name)
         try:
-            sums.save(path)
+            sums.save(film_files.path_of(self.scene, self.layer.name, sums.passes, self.view.suffix))
         except OpalError as error:
             self.report.add("", str(error))
 
@@ -354,7 +394,7 @@ class _FinalRender:
         first, last = self.settings.wavelength_first, self.settings.wavelength_last
         centers = spectral_exr.bin_centers(first, last, self.settings.spectral_bins)
         try:
-            path = spectral_exr.output_path(self.scene, self.layer.name)
+            path = spectral_exr.output_path(self.scene, self.layer.name, self.view.suffix)
             spectral_exr.write(path, render.film(Pass.SPECTRAL), render.film(Pass.COMBINED), centers)
         except OpalError as error:
             self.report.add("", str(error))
@@ -365,12 +405,6 @@ def _shutter(render: Any) -> tuple[float, float, float]:
     half = 0.5 * render.motion_blur_shutter
     middle = {"START": half, "CENTER": 0.0, "END": -half}[render.motion_blur_position]
     return middle - half, middle, middle + half
-
-
-def _put(result: Any, name: str, pixels: np.ndarray) -> None:
-    for candidate in result.layers[0].passes:
-        if candidate.name == name:
-            candidate.rect.foreach_set(np.ascontiguousarray(pixels, np.float32).reshape(-1))
 
 
 def _clock(seconds: float) -> str:

@@ -57,7 +57,7 @@ def threads_of(render: Any) -> int:
     return render.threads if render.threads_mode == "FIXED" else 0
 
 
-def render_settings(scene: Any, frame: Frame, passes: Sequence[Pass] = (), preview: bool = False) -> RenderSettings:
+def render_settings(scene: Any, frame: Frame, passes: Sequence[Pass] = (), preview: bool = False, layer: Any = None) -> RenderSettings:
     """The kernels' settings of a scene.
 
     Parameters
@@ -69,10 +69,13 @@ def render_settings(scene: Any, frame: Frame, passes: Sequence[Pass] = (), previ
         What the film keeps beside Combined.
     preview : bool
         Fewer photons and no spectral film, for material previews and viewports.
+    layer : bpy.types.ViewLayer, optional
+        May leave motion blur out.
     """
     opal = scene.opal
     spectral = opal.use_spectral_output and not preview
     photons = min(opal.photons_per_pass, _PREVIEW_PHOTONS) if preview else opal.photons_per_pass
+    layer_blurs = getattr(layer, "use_motion_blur", True)  # since Blender 5
     first, last = sorted(opal.wavelengths)
     first = min(first, 829.0)
     return RenderSettings(
@@ -101,7 +104,7 @@ def render_settings(scene: Any, frame: Frame, passes: Sequence[Pass] = (), previ
         transparent_film=scene.render.film_transparent,
         clamp_direct=opal.clamp_direct,
         clamp_indirect=opal.clamp_indirect,
-        motion_blur=scene.render.use_motion_blur and not preview,
+        motion_blur=scene.render.use_motion_blur and layer_blurs and not preview,
         spectral_bins=opal.spectral_bins if spectral else 0,
         threads=threads_of(scene.render),
         adaptive=opal.use_adaptive_sampling and not preview,

@@ -8,7 +8,6 @@ radiance. R, G and B beside them are the picture that an ordinary viewer shows. 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,8 @@ from typing import Any
 import bpy
 import numpy as np
 from opal_kernels.binding import OpalError
+
+from .film_files import with_frame
 
 # Blender's watts are not bound to a spectrum, so neither is the scale: only ratios between wavelengths and pixels are physical.
 UNITS = "relative spectral radiance: 1 at every wavelength has luminance 1 in R, G, B"
@@ -32,23 +33,23 @@ def channel_name(wavelength: float) -> str:
     return f"S0.{digits + '0' if digits.endswith('.') else digits}nm".replace(".", ",").replace(",", ".", 1)
 
 
-def output_path(scene: Any, layer: str) -> Path:
-    """Where a frame's spectral file goes: # are digits of the frame; a layer's name is added where there are several.
+def output_path(scene: Any, layer: str, suffix: str = "") -> Path:
+    """Where a frame's spectral file goes: # are digits of the frame; a layer's name is added where there are several, and a view's suffix.
 
     Raises
     ------
     OpalError
-        If the scene's setting names no file.
+        If the scene's setting names no file, or one beside a file that was never saved.
     """
-    path = bpy.path.abspath(scene.opal.spectral_path)
+    path = scene.opal.spectral_path
     if not path or path.endswith(("/", "\\")):
         raise OpalError("The spectral file cannot be written: Spectral EXR › File names no file.")
-    path = re.sub(r"#+", lambda run: f"{scene.frame_current:0{len(run.group())}d}", path)
+    path = with_frame(path, scene.frame_current)
     if not path.lower().endswith(".exr"):
         path += ".exr"
     if len(scene.view_layers) > 1:
         path = f"{path[:-4]}_{bpy.path.clean_name(layer)}.exr"
-    return Path(path)
+    return Path(f"{path[:-4]}{suffix}.exr")
 
 
 def unavailable() -> str:

@@ -78,8 +78,6 @@ def write(scene: Any, filepath: str, pictures: dict[str, np.ndarray], result: di
 
     from ..addon.film_files import with_frame
 
-    if filepath.startswith("//") and not bpy.data.filepath:
-        raise OpalError(f"Save the file first: “{filepath}” is relative to it.")
     stem = Path(with_frame(filepath, scene.frame_current))
     try:
         stem.parent.mkdir(parents=True, exist_ok=True)

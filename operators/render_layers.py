@@ -48,10 +48,6 @@ class WritesFile:
         from ..addon.film_files import with_frame
         from . import float_images
 
-        if self.filepath.startswith("//") and not bpy.data.filepath:
-            from opal_kernels.binding import OpalError
-
-            raise OpalError(f"Save the file first: “{self.filepath}” is relative to it.")
         path = with_frame(self.filepath, context.scene.frame_current)
         path = Path(path if path.lower().endswith(".exr") else path + ".exr")
         if path.exists() and not context.scene.render.use_overwrite:

@@ -105,6 +105,7 @@ def camera_from_object(
     *,
     matrix: Any = None,
     matrix_ends: Sequence[Any] = (),
+    shift_x: float | None = None,
     report: Report = _ignore,
 ) -> Camera:
     """The camera of a final render.
@@ -121,6 +122,8 @@ def camera_from_object(
         Camera to world, in the middle of the shutter; the object's own by default.
     matrix_ends : sequence of Matrix
         The same at shutter open and close, or nothing: it stands still.
+    shift_x : float, optional
+        Of an eye of a stereo camera, instead of the lens's own.
     report : callable
         Takes a name and a sentence for what cannot be kept.
 
@@ -131,8 +134,8 @@ def camera_from_object(
     """
     matrix = camera_object.matrix_world if matrix is None else matrix
     window, fields = _lens(camera_object, scene, matrix, report)
-    if scene.render.use_multiview:
-        report(Named(camera_object), "Opal renders no stereo: every view shows the same picture", "Stereoscopy")
+    if shift_x is not None and "shift" in window:
+        window["shift"] = (shift_x, window["shift"][1])
     _refuse_what_is_not_finite(camera_object, (matrix, *matrix_ends), fields)
     aspect = (scene.render.pixel_aspect_x, scene.render.pixel_aspect_y)
     start, end = map(optics.rigid, matrix_ends) if matrix_ends else (None, None)

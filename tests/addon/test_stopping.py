@@ -102,6 +102,20 @@ def test_a_running_pass_stops_within_a_third_of_a_second_and_is_not_denoised(mon
     assert pressed["stopped"] - pressed["at"] < 0.3
 
 
+@pytest.mark.parametrize("position", ["START", "END"])
+def test_the_frame_is_what_it_was_though_the_scene_is_read_no_further(position, pressed, monkeypatch):
+    """The middle of such a shutter is another moment: frame 7 was left at 7.25."""
+    scene = stage.scene()
+    stage.camera((0, 0, 5))
+    scene.frame_set(7)
+    scene.render.use_motion_blur, scene.render.motion_blur_position = True, position
+    builder = stage.addon("translate.scene_builder").SceneBuilder
+    reads = noted(monkeypatch, builder, "read", lambda *_: pressed.set())
+    bpy.ops.render.render()
+    assert [type(end).__name__ for end in reads] == ["Stopped"]
+    assert (scene.frame_current, scene.frame_subframe) == (7, 0.0)
+
+
 def test_a_scene_that_is_being_built_is_given_up(pressed, monkeypatch, tmp_path):
     stage.scene()
     stage.camera((0, 0, 5))
