@@ -144,7 +144,7 @@ class SceneSync:
         try:
             snapshot = builder.read(depsgraph)
             kept = _Kept(
-                structure=_structure(snapshot.groups, snapshot.mesh_of_group),
+                structure=_structure(snapshot.groups, [key[0] for key in snapshot.mesh_of_group]),
                 transforms=[group.transforms for group in snapshot.groups],
                 placed_inside=[any(has_volume(m) for m in group.materials) for group in snapshot.groups],
                 lights=snapshot.lights,

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
+import bpy
 import numpy as np
 from opal_kernels.descriptions import Attribute, Camera, Light, World
 from opal_kernels.mesh_bodies import NO_GEM
@@ -30,6 +31,12 @@ from .spectra import Spectra
 from .volumes import Body
 from .world import add_world_medium, world_from_scene
 
+_WORKING_SPACE = "Linear Rec.709"
+
+# The address that a mesh had, and which of its slots are gems and media (`_same_materials`): objects of one mesh that are filled by
+# slots of their own have its faces turned each as it needs.
+MeshKey = tuple[int, tuple[int, ...], tuple[int, ...]]
+
 
 @dataclass
 class Snapshot:
@@ -37,8 +44,8 @@ class Snapshot:
 
     groups: list[Group] = field(default_factory=list)
     materials: list[list[int]] = field(default_factory=list)  # kernel numbers, a list a group
-    meshes: dict[int, MeshArrays | None] = field(default_factory=dict)  # by the address the mesh had
-    mesh_of_group: list[int] = field(default_factory=list)
+    meshes: dict[MeshKey, MeshArrays | None] = field(default_factory=dict)
+    mesh_of_group: list[MeshKey] = field(default_factory=list)
     has_gem: list[bool] = field(default_factory=list)  # whether any of a group's materials is a gem
     lights: list[tuple[Light, str]] = field(default_factory=list)
     bodies: list[Body | None] = field(default_factory=list)  # what a group's materials fill
@@ -138,7 +145,19 @@ class SceneBuilder:
             self._report.add(name, sentence, lost=True)
         for name, sentence in visible.changes:
             self._report.add(name, sentence)
+        self._note_working_space()
         return visible
+
+    def _note_working_space(self) -> None:
+        """Says so where the file's numbers of colours are not of Rec.709, which a file may choose since Blender 5."""
+        space = getattr(getattr(bpy.data, "colorspace", None), "working_space", _WORKING_SPACE)
+        if space != _WORKING_SPACE:
+            self._report.add(
+                "",
+                f"the file works in {space}, and Opal in {_WORKING_SPACE}: images, and what spectra colour, such as stones and bows, are "
+                "shown too saturated",
+                "Working Space",
+            )
 
     def before_change(self, call: Callable[[], None]) -> None:
         """Sets what reading once more calls before it adds an image or a spectrum to the kernels' scene."""
@@ -202,8 +221,10 @@ class SceneBuilder:
         except ValueError as error:
             self._report.add(Named(world), f"{str(error).rstrip('.')}; the world is rendered empty.", lost=True)
 
-    def _read_mesh(self, group: Group, needs: MeshNeeds, snapshot: Snapshot, body: Body | None) -> int:
-        key = group.mesh.as_pointer()
+    def _read_mesh(self, group: Group, needs: MeshNeeds, snapshot: Snapshot, body: Body | None) -> MeshKey:
+        gems = _same_materials(group, lambda m: m.opal.kind == "GEM")
+        media = _same_materials(group, bounds_a_medium) if body is not None and body.closed else ()
+        key = group.mesh.as_pointer(), gems, media
         if body is not None and body.is_volume:
             box = body.bounds()
             if snapshot.meshes.get(key) is None:
@@ -213,17 +234,15 @@ class SceneBuilder:
             for sentence in arrays.problems if arrays is not None else ():
                 self._report.add(group.name, sentence, lost=True)
             if arrays is not None:
-                self._mend(arrays, group, "gem", lambda m: m.opal.kind == "GEM")
-                if body is not None and body.closed:
-                    self._mend(arrays, group, "medium", bounds_a_medium)
+                self._mend(arrays, group, "gem", gems)
+                self._mend(arrays, group, "medium", media)
         group.mesh = None
         return key
 
-    def _mend(self, arrays: MeshArrays, group: Group, what: str, is_one: Callable[[Any], bool]) -> None:
+    def _mend(self, arrays: MeshArrays, group: Group, what: str, bodies: tuple[int, ...]) -> None:
         """Turns the faces of the group's gems or media outwards where they look inwards, and says so."""
-        mine = [key_of(m) if m is not None and is_one(m) else None for m in group.materials]
-        if any(one is not None for one in mine):
-            for sentence in mend_gem_mesh(arrays, [NO_GEM if one is None else mine.index(one) for one in mine], what):
+        if bodies:
+            for sentence in mend_gem_mesh(arrays, bodies, what):
                 self._report.add(group.name, sentence)
 
     def read_motion(self, depsgraph: Any, snapshot: Snapshot) -> None:
@@ -234,7 +253,7 @@ class SceneBuilder:
         self._stage("Reading motion")
         visible = self._undisturbed(lambda: collect(depsgraph), depsgraph)
         by_rows = {(group.name, len(group.rows), int(group.rows[0])): group for group in visible.groups}
-        deformed: dict[int, np.ndarray] = {}
+        deformed: dict[MeshKey, np.ndarray] = {}
         for group, key in zip(snapshot.groups, snapshot.mesh_of_group, strict=True):
             then = by_rows.get((group.name, len(group.rows), int(group.rows[0])))
             if then is None or not np.array_equal(then.rows, group.rows):
@@ -263,7 +282,7 @@ class SceneBuilder:
         self.scene.cancel()
 
     def _build(self, snapshot: Snapshot, camera: Camera | None) -> None:
-        numbers: dict[int, int] = {}
+        numbers: dict[MeshKey, int] = {}
         for group, materials, key in zip(snapshot.groups, snapshot.materials, snapshot.mesh_of_group, strict=True):
             arrays = snapshot.meshes[key]
             if self._stopping:
@@ -321,6 +340,12 @@ class SceneBuilder:
                 self.scene.add_light(light)
             except binding.OpalError as error:
                 self._report.add(name, f"the lamp is left out: {error}", lost=True)
+
+
+def _same_materials(group: Group, is_one: Callable[[Any], bool]) -> tuple[int, ...]:
+    """For each slot the first of the same material where it is one, `NO_GEM` elsewhere; empty where none is."""
+    mine = [key_of(m) if m is not None and is_one(m) else None for m in group.materials]
+    return tuple(NO_GEM if one is None else mine.index(one) for one in mine) if any(one is not None for one in mine) else ()
 
 
 def world_of(depsgraph: Any) -> Any:

@@ -241,6 +241,33 @@ def test_a_spectral_path_without_a_file_names_the_setting(path, tmp_path):
     assert any("Spectral EXR › File names no file" in entry for entry in stage.problems()), stage.problems()
 
 
+def test_files_beside_one_that_was_never_saved_are_refused(tmp_path, monkeypatch):
+    """Blender refuses its own picture there; these came into the folder that it was started from."""
+    scene = stage.scene()
+    stage.camera()
+    monkeypatch.chdir(tmp_path)
+    scene.opal.use_spectral_output = scene.opal.use_film_file = True
+    (tmp_path / "picture").mkdir()
+    stage.render(tmp_path / "picture")
+    for path in ("//spectral_####.exr", "//film_####.npz"):
+        assert f"Save the file first: “{path}” is relative to it." in stage.problems(), stage.problems()
+    assert [entry.name for entry in tmp_path.iterdir()] == ["picture"]
+
+
+@pytest.mark.skipif(not hasattr(bpy.data, "colorspace"), reason="files have no working space before Blender 5")
+def test_a_file_of_another_working_space_is_named(tmp_path):
+    stage.scene()
+    stage.camera()
+    bpy.ops.wm.set_working_color_space(working_space="ACEScg", convert_colors=False)
+    try:
+        stage.render(tmp_path)
+        assert [entry for entry in stage.problems() if entry.startswith("Working Space: the file works in ACEScg")], stage.problems()
+    finally:
+        bpy.ops.wm.set_working_color_space(working_space="Linear Rec.709", convert_colors=False)
+    stage.render(tmp_path)
+    assert not stage.problems()
+
+
 def test_a_locked_output_path_is_an_error_and_no_crash(tmp_path):
     scene = stage.scene()
     stage.camera()

@@ -47,6 +47,20 @@ def test_flipped_normals_are_named_and_make_no_difference(opal, tmp_path):
     assert flipped == pytest.approx(right, rel=0.01)
 
 
+def test_what_shares_a_flipped_mesh_has_it_turned_where_it_is_a_gem(opal, tmp_path):
+    """Slots may be objects': whichever was read first, a matte one among them, said for all which faces are turned."""
+    obj = tinted_stone()
+    stone = stage.link("Second", obj.data)
+    stone.rotation_euler = obj.rotation_euler
+    obj.location = (9, 0, 0)
+    obj.material_slots[0].link, obj.material_slots[0].material = "OBJECT", stage.matte()
+    right = stage.render(tmp_path)[..., :3].mean(axis=(0, 1))
+    obj.data.flip_normals()
+    flipped = stage.render(tmp_path)[..., :3].mean(axis=(0, 1))
+    assert any("normals are flipped" in line for line in about("Second"))
+    assert flipped == pytest.approx(right, rel=0.01)
+
+
 def test_some_flipped_faces_are_named(opal, tmp_path):
     _, obj = stone_in_a_furnace()
     obj.data.polygons[2].flip()
