@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The engine as a good citizen: it is registered, renders, ends when told, writes what it promises."""
 
+import threading
 import time
 from types import SimpleNamespace
 
@@ -70,14 +71,28 @@ def test_the_noise_threshold_ends_the_render_once_it_is_reached(tmp_path):
 
 
 def test_progress_statistics_and_time_left_are_told(monkeypatch, tmp_path):
+    """Each pass here ends only once it was told of: one that is done before anybody asks need not be."""
     busy_scene(passes=3)
     final_render = stage.addon("final_render")
-    told = []
-    original = final_render._FinalRender._tell
-    monkeypatch.setattr(final_render._FinalRender, "_tell", lambda self, *arguments: (told.append(arguments), original(self, *arguments)))
+    told, heard = [], threading.Event()
+    original, run_pass = final_render._FinalRender._tell, final_render.Render.run_pass
+
+    def tell(self, *arguments):
+        told.append(arguments)
+        original(self, *arguments)
+        heard.set()
+
+    def run_and_wait(self, number):
+        heard.clear()
+        run_pass(self, number)
+        assert heard.wait(60), f"nobody told of pass {number + 1}"
+
+    monkeypatch.setattr(final_render._FinalRender, "_tell", tell)
+    monkeypatch.setattr(final_render.Render, "run_pass", run_and_wait)
     stage.render(tmp_path)
-    assert {arguments[0] for arguments in told} <= {0, 1, 2} and len(told) >= 3
-    assert all(0 <= done <= total for _, total, done, _ in told)
+    assert {arguments[0] for arguments in told} == {0, 1, 2}
+    assert all(0 <= done <= total == 3 for _, total, done, _ in told)
+    assert [done for _, _, done, _ in told] == sorted(done for _, _, done, _ in told)
 
 
 def test_motion_blur_smears_a_moving_object_along_its_path(tmp_path):
