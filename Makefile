@@ -44,8 +44,7 @@ EXTENSION_SOURCES := $(shell find addon operators -type f -not -path '*/__pycach
 
 build/%.list: FORCE
 	@mkdir -p build
-	@echo $($*_SOURCES) | tr ' ' '\n' | sort >$@.new
-	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+	@new=$@.$$$$; echo $($*_SOURCES) | tr ' ' '\n' | sort >$$new; cmp -s $$new $@ && rm $$new || mv $$new $@
 
 build/wheel.stamp: $(KERNEL_SOURCES) build/KERNEL.list | environment
 	@echo "Building the kernels' wheel"

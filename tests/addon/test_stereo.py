@@ -31,12 +31,13 @@ def eyes(engine, folder):
     image_settings = scene.render.image_settings
     if hasattr(image_settings, "media_type"):
         image_settings.media_type = "IMAGE"
-    image_settings.file_format, image_settings.color_depth, image_settings.views_format = "OPEN_EXR", "32", "INDIVIDUAL"
-    scene.render.filepath = str(folder / f"{engine}.exr")
+    # Radiance files are linear too, and know of no views: Blender 4.5 takes an OpenEXR file of one view for one of many layers.
+    image_settings.file_format, image_settings.views_format = "HDR", "INDIVIDUAL"
+    scene.render.filepath = str(folder / f"{engine}.hdr")
     bpy.ops.render.render(write_still=True)
     found = []
     for suffix in ("_L", "_R"):
-        image = bpy.data.images.load(str(folder / f"{engine}{suffix}.exr"))
+        image = bpy.data.images.load(str(folder / f"{engine}{suffix}.hdr"))
         found.append(np.array(image.pixels, np.float32).reshape(24, 32, 4)[..., :3])
     return found
 

@@ -26,7 +26,8 @@ class LargeArray {
   explicit LargeArray(size_t n) : size_(n) {
     if (n == 0) return;
     const size_t bytes = n * sizeof(T);
-    data_.reset(static_cast<T *>(::operator new(bytes, std::align_val_t(kPage))));
+    const auto alignment = std::align_val_t(bytes >= kPage ? kPage : kLine);
+    data_ = {static_cast<T *>(::operator new(bytes, alignment)), Free{alignment}};
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
     if (bytes >= kPage) madvise(data_.get(), bytes & ~(kPage - 1), MADV_HUGEPAGE);  // a hint and no more
 #endif
@@ -44,9 +45,10 @@ class LargeArray {
   const T &operator[](size_t i) const { return data_.get()[i]; }
 
  private:
-  static constexpr size_t kPage = size_t(1) << 21;
+  static constexpr size_t kPage = size_t(1) << 21, kLine = 64;
   struct Free {
-    void operator()(T *data) const { ::operator delete(data, std::align_val_t(kPage)); }
+    std::align_val_t alignment{kLine};
+    void operator()(T *data) const { ::operator delete(data, alignment); }
   };
 
   std::unique_ptr<T, Free> data_;
