@@ -55,5 +55,5 @@ def fair_weather(sun_height: float, target: tuple[float, float, float], lens: fl
     scene.camera.data.clip_end = 1e5
     scene.view_settings.exposure, scene.view_settings.look = 0.9, "AgX - High Contrast"
     scene.render.resolution_x, scene.render.resolution_y = 960, 540
-    _scene.limit(scene, 5, 0, 58.0)
+    _scene.limit(scene, 4, 0, 50.0)
     return scene
