@@ -95,14 +95,19 @@ def test_progress_statistics_and_time_left_are_told(monkeypatch, tmp_path):
     assert [done for _, _, done, _ in told] == sorted(done for _, _, done, _ in told)
 
 
-def test_motion_blur_smears_a_moving_object_along_its_path(tmp_path):
-    scene = stage.scene(width=32, height=8, passes=8, samples=16)
-    stage.camera((0, 0, 5), type="ORTHO", ortho_scale=8)
+def _card_that_moves(scene):
+    """Across the picture, at frame 1 in its middle."""
     card = stage.plane(size=1, material=stage.glowing())
     for frame, x in ((0, -2), (2, 2)):
         card.location.x = x
         card.keyframe_insert("location", frame=frame)
     scene.frame_set(1)
+
+
+def test_motion_blur_smears_a_moving_object_along_its_path(tmp_path):
+    scene = stage.scene(width=32, height=8, passes=8, samples=16)
+    stage.camera((0, 0, 5), type="ORTHO", ortho_scale=8)
+    _card_that_moves(scene)
     sharp = stage.render(tmp_path)[4, :, 1]
     scene.render.use_motion_blur = True
     scene.render.motion_blur_shutter = 1.0
@@ -116,11 +121,7 @@ def test_motion_blur_smears_a_moving_object_along_its_path(tmp_path):
 def test_a_view_layer_without_motion_blur_stays_sharp(tmp_path):
     scene = stage.scene(width=32, height=8, passes=1, samples=16)
     stage.camera((0, 0, 5), type="ORTHO", ortho_scale=8)
-    card = stage.plane(size=1, material=stage.glowing())
-    for frame, x in ((0, -2), (2, 2)):
-        card.location.x = x
-        card.keyframe_insert("location", frame=frame)
-    scene.frame_set(1)
+    _card_that_moves(scene)
     sharp = stage.render(tmp_path)
     scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1.0
     scene.view_layers[0].use_motion_blur = False
