@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/parallel.h"
+#include "core/vec.h"
 
 #include <vector>
 
@@ -25,6 +26,18 @@ template <class T, class Task>
 void for_chunks(const Chunks<T> &chunks, int threads, const Task &task) {
   const std::atomic<bool> never{false};
   parallel_for(int64_t(chunks.size()), threads, never, [&](int64_t c) { task(size_t(c)); });
+}
+
+// The box round the places of all items.
+template <class T>
+Bounds bounds_of_positions(const Chunks<T> &chunks, int threads) {
+  std::vector<Bounds> of_chunk(chunks.size());
+  for_chunks(chunks, threads, [&](size_t c) {
+    for (const T &item : chunks[c]) of_chunk[c].extend(item.position);
+  });
+  Bounds all;
+  for (const Bounds &b : of_chunk) all.extend(b);
+  return all;
 }
 
 }  // namespace opal

@@ -45,12 +45,7 @@ void PhotonMap::build(Chunks<Photon> &&chunks, float radius, int threads) {
   const std::vector<size_t> starts = starts_of(chunks);
   const size_t n = starts.back();
   if (n == 0 || !(radius > 0)) return;
-  std::vector<Bounds> bounds(chunks.size());
-  for_chunks(chunks, threads, [&](size_t c) {
-    for (const Photon &p : chunks[c]) bounds[c].extend(p.position);
-  });
-  for (const Bounds &b : bounds) bounds[0].extend(b);
-  origin_ = bounds[0].low;
+  origin_ = bounds_of_positions(chunks, threads).low;
   mask_ = uint32_t(std::bit_ceil(n) - 1);
 
   // Stable, so that the order inside a bucket is the order of emission.

@@ -43,13 +43,7 @@ void VolumeMap::build(Chunks<VolumePhoton> &&chunks, float radius, float shrunk,
   const std::vector<size_t> starts = starts_of(chunks);
   const size_t n = starts.back();
   if (n == 0) return;
-  std::vector<Bounds> bounds(chunks.size());
-  for_chunks(chunks, threads, [&](size_t c) {
-    for (const VolumePhoton &photon : chunks[c]) bounds[c].extend(photon.position);
-  });
-  for (const Bounds &b : bounds) bounds[0].extend(b);
-
-  const CurveOfSets curve(bounds[0]);
+  const CurveOfSets curve(bounds_of_positions(chunks, threads));
   LargeArray<Keyed<const VolumePhoton *>> keyed(n);
   for_chunks(chunks, threads, [&](size_t c) {
     for (size_t i = 0; i < chunks[c].size(); ++i) {
